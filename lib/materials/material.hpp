@@ -1,24 +1,88 @@
 #pragma once
-// The contract of a material. A material is a plain struct with two or three templated calls; it is evaluated with float, double, packs of lanes
-// (core/pack.hpp) and dual numbers (core/dual.hpp), on host and device. So no branches on values: use select(condition, a, b), max(a, b), min(a, b), sqrt, log.
+// The contract of a material. A material is a plain struct with a few templated calls; it is evaluated with float, double, packs of lanes
+// (core/pack.hpp) and dual numbers (core/dual.hpp), on host and device. So no branches on values: use select(condition, a, b), max(a, b),
+// min(a, b), sqrt, log, called unqualified. A new material is one file, one line in registry.hpp and one test (docs/adding-a-material.md).
 //
 //   template <class Scalar>                       // scalar of the parameters: the step's precision, double or a dual number
 //   struct SomeLaw {
 //     Scalar density; …
+//     /// The law of a deck's material.
+//     static SomeLaw from(const deck::SomeMaterial& material);
 //     /// Number of history values a particle carries for this law (stress first, where it is carried).
 //     template <int Dim> static constexpr int history_size();
-//     /// Advances the committed state by one step. H = Δt ∇v. `compression` is ρ/ρ0 − 1; `history` has history_size values, updated in place.
-//     /// Returns the energy dissipated per unit of current volume during the step (plastic or viscous work), J/m³.
+//     /// Place of the plastic strain in the history, −1 where the law has none.
+//     template <int Dim> static constexpr int plastic_strain_index();
+//     /// Advances the committed state by one step. H = Δt ∇v. `compression` is ρ/ρ0 − 1; `history` has history_size values, updated in
+//     place.
+//     /// Returns the energy dissipated per unit of current volume during the step (plastic work where the law has a plastic strain, else
+//     /// viscous work), J/m³.
 //     template <class Real, int Dim> Real update(const Matrix<Real, Dim>& H, Real dt, Real& compression, Real* history) const;
 //     /// Cauchy stress of a committed state, Pa, tension positive.
 //     template <class Real, int Dim> Symmetric<Real, Dim> stress(Real compression, const Real* history) const;
 //     /// Speed of the fastest elastic wave in that state, m/s (time step).
 //     template <class Real, int Dim> Real wave_speed(Real compression, const Real* history) const;
-//     /// Kinematic viscosity-like rate for the viscous limit of the time step, m²/s (0 where none).
+//     /// Rate at which the law's viscosity spreads momentum, m²/s (0 where none): the viscous limit of the time step.
 //     Scalar diffusivity() const;
 //     /// Strain energy per unit of current volume, J/m³.
 //     template <class Real, int Dim> Real energy(Real compression, const Real* history) const;
 //     /// History of a particle that starts with a given Cauchy stress (initial_stress) and compression.
 //     template <class Real, int Dim> void start(const Symmetric<Real, Dim>& stress, Real compression, Real* history) const;
-//     static constexpr int plastic_strain_index<Dim>  // place of plastic strain in history, −1 where none
 //   };
+//
+// Pieces that laws share follow.
+#include "core/scalar.hpp"
+#include "core/tensor.hpp"
+
+namespace jaxmpm {
+
+/// A symmetric tensor kept in a particle's history, in the order of Symmetric.
+template <class Real, int Dim>
+JAXMPM_INLINE Symmetric<Real, Dim> read_symmetric(const Real* history) {
+  Symmetric<Real, Dim> s;
+  for (int k = 0; k < s.size; ++k) s[k] = history[k];
+  return s;
+}
+
+template <class Real, int Dim>
+JAXMPM_INLINE void write_symmetric(const Symmetric<Real, Dim>& s, Real* history) {
+  for (int k = 0; k < s.size; ++k) history[k] = s[k];
+}
+
+template <class Real, int Dim>
+JAXMPM_INLINE Real mean(const Symmetric<Real, Dim>& s) {
+  return Real(1.0 / 3.0) * trace(s);
+}
+
+/// s − (tr s / 3) I; the third of the trace also in plane strain, where zz is a component like the others.
+template <class Real, int Dim>
+JAXMPM_INLINE Symmetric<Real, Dim> deviator(const Symmetric<Real, Dim>& s) {
+  const Real m = mean(s);
+  Symmetric<Real, Dim> d = s;
+  for (int k = 0; k < 3; ++k) d[k] = d[k] - m;
+  return d;
+}
+
+/// s : s / 2; of a deviatoric stress, the invariant J2.
+template <class Real, int Dim>
+JAXMPM_INLINE Real half_square(const Symmetric<Real, Dim>& s) {
+  Real shear = s[3] * s[3];
+  if constexpr (Dim == 3) shear = shear + s[4] * s[4] + s[5] * s[5];
+  return Real(0.5) * (s[0] * s[0] + s[1] * s[1] + s[2] * s[2]) + shear;
+}
+
+/// ρ ← ρ / (1 + θ) in terms of e = ρ/ρ0 − 1, θ the relative change of volume: no difference of large numbers, so that single precision
+/// keeps e.
+template <class Real>
+JAXMPM_INLINE Real compress(Real e, Real theta) {
+  return (e - theta) / (Real(1) + theta);
+}
+
+/// x − log(1 + x) = x²/2 − x³/3 + … without cancellation: by its series below |x| = 0.03, where nine terms leave less than 1e-14.
+template <class Real>
+JAXMPM_INLINE Real minus_log_one_plus(Real x) {
+  Real series = Real(0);
+  for (int n = 10; n >= 2; --n) series = Real(1.0 / n) - x * series;
+  return select(abs(x) < Real(0.03), x * x * series, x - log1p(x));
+}
+
+}  // namespace jaxmpm

@@ -1,0 +1,35 @@
+#pragma once
+// The scalar functions that numerical templates call unqualified: here for float and double; core/dual.hpp and core/pack.hpp overload the
+// same names for dual numbers and packs of lanes. A comparison gives bool (or a mask of lanes); select() takes it, so that one source
+// serves all.
+#include <cmath>
+
+#include "core/macros.hpp"
+
+namespace jaxmpm {
+
+JAXMPM_INLINE float select(bool condition, float a, float b) { return condition ? a : b; }
+JAXMPM_INLINE double select(bool condition, double a, double b) { return condition ? a : b; }
+
+/// Larger and smaller of two numbers. A NaN in the first argument comes through, so that a run that went bad is noticed.
+JAXMPM_INLINE float max(float a, float b) { return a < b ? b : a; }
+JAXMPM_INLINE double max(double a, double b) { return a < b ? b : a; }
+JAXMPM_INLINE float min(float a, float b) { return b < a ? b : a; }
+JAXMPM_INLINE double min(double a, double b) { return b < a ? b : a; }
+
+JAXMPM_INLINE float abs(float x) { return std::fabs(x); }
+JAXMPM_INLINE double abs(double x) { return std::fabs(x); }
+JAXMPM_INLINE float sqrt(float x) { return std::sqrt(x); }
+JAXMPM_INLINE double sqrt(double x) { return std::sqrt(x); }
+JAXMPM_INLINE float exp(float x) { return std::exp(x); }
+JAXMPM_INLINE double exp(double x) { return std::exp(x); }
+JAXMPM_INLINE float log(float x) { return std::log(x); }
+JAXMPM_INLINE double log(double x) { return std::log(x); }
+JAXMPM_INLINE float log1p(float x) { return std::log1p(x); }
+JAXMPM_INLINE double log1p(double x) { return std::log1p(x); }
+
+/// The number itself, without derivatives: for decisions such as which cell a particle is in.
+JAXMPM_INLINE float value_of(float x) { return x; }
+JAXMPM_INLINE double value_of(double x) { return x; }
+
+}  // namespace jaxmpm

@@ -1,0 +1,121 @@
+#pragma once
+// Drucker–Prager elastoplasticity with a tension cut-off, non-associated (Du & He 2025, appendix A), with three repairs (docs/theory.md):
+// the rotation is exact (elastic.hpp); a return that would leave the admissible region ends at the corner of cone and cut-off; and for
+// strong dilation the border of the tension zone follows the return direction, so that the stress is continuous in the trial stress.
+#include <cmath>
+
+#include "materials/elastic.hpp"
+
+namespace jaxmpm {
+
+template <class Scalar>
+struct DruckerPrager {
+  Scalar density;  // ρ0, kg/m³
+  IsotropicElasticity<Scalar> elasticity;
+  Scalar friction;        // q_φ = 6 sin φ / (√3 (3 + sin φ))
+  Scalar cohesion;        // k_φ = 6 c cos φ / (√3 (3 + sin φ)), Pa
+  Scalar dilation;        // q_ψ = 6 sin ψ / (√3 (3 + sin ψ))
+  Scalar tension_cutoff;  // σᵗ, Pa, at most k_φ/q_φ (the apex)
+
+  static DruckerPrager from(const deck::DruckerPrager& m) {
+    const ElasticModuli moduli = elastic_moduli(m);
+    const double degree = std::acos(-1.0) / 180;
+    const double sin_phi = std::sin(m.friction_angle * degree), cos_phi = std::cos(m.friction_angle * degree);
+    const double sin_psi = std::sin(m.dilation_angle * degree), root3 = std::sqrt(3.0);
+    return {Scalar(m.density),
+            {Scalar(moduli.bulk), Scalar(moduli.shear)},
+            Scalar(6 * sin_phi / (root3 * (3 + sin_phi))),
+            Scalar(6 * m.cohesion * cos_phi / (root3 * (3 + sin_phi))),
+            Scalar(6 * sin_psi / (root3 * (3 + sin_psi))),
+            Scalar(m.tension_cutoff)};
+  }
+
+  template <int Dim>
+  static constexpr JAXMPM_INLINE int history_size() {
+    return Symmetric<Scalar, Dim>::size + 1;
+  }
+  template <int Dim>
+  static constexpr JAXMPM_INLINE int plastic_strain_index() {
+    return Symmetric<Scalar, Dim>::size;
+  }
+
+  /// A state of the meridian plane on or inside the yield surface, and the plastic strain that took it there.
+  template <class Real>
+  struct Returned {
+    Real mean, shear;     // σ_m and τ, Pa
+    Real plastic_strain;  // Δε_eq,p
+  };
+
+  /// Slope of the border between shear and tensile failure, from the corner (σᵗ, τ^P) into the trial states above the cut-off:
+  /// α^P of Eq A.8, or the return direction (K q_ψ, G) where that lies below it.
+  JAXMPM_INLINE Scalar border_slope() const {
+    const Scalar alpha = sqrt(Scalar(1) + friction * friction) - friction;
+    const Scalar sideways = elasticity.bulk * dilation;
+    return select(alpha * sideways > elasticity.shear, elasticity.shear / sideways, alpha);
+  }
+
+  /// Returns a trial state to the surface (Eqs A.5–A.19).
+  template <class Real>
+  JAXMPM_INLINE Returned<Real> return_to_surface(Real trial_mean, Real trial_shear) const {
+    const Real q(friction), k(cohesion), cutoff(tension_cutoff), bulk(elasticity.bulk), G(elasticity.shear);
+    const Real fs = trial_shear - k + q * trial_mean;                                              // A.5
+    const Real ft = trial_mean - cutoff;                                                           // A.6
+    const Real h = trial_shear - (k - q * cutoff) - Real(border_slope()) * ft;                     // A.7
+    const Real outside = select(ft < Real(0), fs, h);                                              // zone II where positive, A.10
+    const Real sideways = bulk * Real(dilation);                                                   // K q_ψ
+    const Real lambda_s = select(outside > Real(0), fs / (G + sideways * q), Real(0));             // A.16
+    const Real lambda_t = select(ft < Real(0), Real(0), select(h > Real(0), Real(0), ft / bulk));  // zone III, A.11 and A.19
+    Returned<Real> end;
+    end.mean = min(trial_mean - sideways * lambda_s, cutoff);  // A.12, A.17 and the corner
+    // One clamp is A.13 in zone II, the corner where that was passed, and what keeps zone III below the cone (A.17 keeps τ).
+    end.shear = max(min(trial_shear, k - q * end.mean), Real(0));
+    end.plastic_strain = lambda_s * Real(shear_strain_factor()) + Real(0.47140452079103168) * lambda_t;  // A.15 and A.18 (√2/3)
+    return end;
+  }
+
+  template <class Real, int Dim>
+  JAXMPM_INLINE Real update(const Matrix<Real, Dim>& H, Real, Real& compression, Real* history) const {
+    compression = compress(compression, trace(H));
+    Symmetric<Real, Dim> sigma = elasticity.trial_stress(read_symmetric<Real, Dim>(history), H);
+    const Real trial_mean = mean(sigma);
+    sigma = deviator(sigma);
+    // The floor (1e-18 Pa) keeps τ^{n+1}/τ and the derivative of the root finite where there is no shear.
+    const Real trial_shear = sqrt(max(half_square(sigma), Real(1e-36)));  // A.4
+    const Returned<Real> end = return_to_surface(trial_mean, trial_shear);
+    const Real scale = end.shear / trial_shear;
+    for (int k = 0; k < sigma.size; ++k) sigma[k] = scale * sigma[k];  // A.14
+    for (int k = 0; k < 3; ++k) sigma[k] = sigma[k] + end.mean;
+    write_symmetric(sigma, history);
+    history[sigma.size] = history[sigma.size] + end.plastic_strain;
+    // σ : Δε^p with Δε^p = C⁻¹ : (σ_trial − σ).
+    return end.shear * (trial_shear - end.shear) / Real(elasticity.shear) + end.mean * (trial_mean - end.mean) / Real(elasticity.bulk);
+  }
+
+  template <class Real, int Dim>
+  JAXMPM_INLINE Symmetric<Real, Dim> stress(Real, const Real* history) const {
+    return read_symmetric<Real, Dim>(history);
+  }
+
+  template <class Real, int Dim>
+  JAXMPM_INLINE Real wave_speed(Real compression, const Real*) const {
+    return elasticity.wave_speed(density, compression);
+  }
+
+  JAXMPM_INLINE Scalar diffusivity() const { return Scalar(0); }
+
+  template <class Real, int Dim>
+  JAXMPM_INLINE Real energy(Real, const Real* history) const {
+    return elasticity.energy(read_symmetric<Real, Dim>(history));
+  }
+
+  template <class Real, int Dim>
+  JAXMPM_INLINE void start(const Symmetric<Real, Dim>& stress, Real, Real* history) const {
+    write_symmetric(stress, history);
+    history[stress.size] = Real(0);
+  }
+
+ private:
+  JAXMPM_INLINE Scalar shear_strain_factor() const { return sqrt(Scalar(1.0 / 3.0) + Scalar(2.0 / 9.0) * dilation * dilation); }  // A.15
+};
+
+}  // namespace jaxmpm

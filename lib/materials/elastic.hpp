@@ -1,0 +1,108 @@
+#pragma once
+// Isotropic linear elasticity with an objective rate: what linear_elastic and drucker_prager share; and the elastic constants of a deck's
+// materials.
+#include <optional>
+#include <variant>
+
+#include "deck/deck.hpp"
+#include "materials/material.hpp"
+
+namespace jaxmpm {
+
+/// R σ Rᵀ with R = (I − W/2)⁻¹ (I + W/2), W = (H − Hᵀ)/2: the Cayley transform of Hughes & Winget (1980), exactly orthogonal, so that the
+/// invariants of σ survive any number of turns (Du & He 2025, Eq A.2, is its first-order limit and lets J2 grow). With S = W/2 and
+/// a² = −tr S²/2, R − I = 2 (S + S²)/(1 + a²); the difference from I is what is applied, so that single precision keeps small turns.
+template <class Real, int Dim>
+JAXMPM_INLINE Symmetric<Real, Dim> rotate(const Symmetric<Real, Dim>& stress, const Matrix<Real, Dim>& H) {
+  Matrix<Real, Dim> S, E, ES;
+  Real a2 = Real(0);
+  for (int i = 0; i < Dim; ++i)
+    for (int j = 0; j < Dim; ++j) S(i, j) = Real(0.25) * (H(i, j) - H(j, i));
+  for (int i = 0; i < Dim; ++i)
+    for (int j = 0; j < i; ++j) a2 = a2 + S(i, j) * S(i, j);
+  const Real scale = Real(2) / (Real(1) + a2);
+  for (int i = 0; i < Dim; ++i)
+    for (int j = 0; j < Dim; ++j) {
+      Real sum = S(i, j);
+      for (int k = 0; k < Dim; ++k) sum = sum + S(i, k) * S(k, j);
+      E(i, j) = scale * sum;
+    }
+  for (int i = 0; i < Dim; ++i)
+    for (int j = 0; j < Dim; ++j) {
+      Real sum = E(i, 0) * stress(0, j);
+      for (int k = 1; k < Dim; ++k) sum = sum + E(i, k) * stress(k, j);
+      ES(i, j) = sum;
+    }
+  Symmetric<Real, Dim> rotated = stress;
+  for (int i = 0; i < Dim; ++i)
+    for (int j = 0; j <= i; ++j) {
+      Real sum = ES(i, j) + ES(j, i);
+      for (int k = 0; k < Dim; ++k) sum = sum + ES(i, k) * E(j, k);
+      const int at = Symmetric<Real, Dim>::index(i, j);
+      rotated[at] = rotated[at] + sum;
+    }
+  return rotated;
+}
+
+/// Bulk modulus K and shear modulus G, Pa.
+template <class Scalar>
+struct IsotropicElasticity {
+  Scalar bulk, shear;
+
+  /// Rσ Rᵀ + K tr(Δd) I + 2 G dev Δd, Δd = (H + Hᵀ)/2 (Du & He 2025, Eq A.1).
+  template <class Real, int Dim>
+  JAXMPM_INLINE Symmetric<Real, Dim> trial_stress(const Symmetric<Real, Dim>& stress, const Matrix<Real, Dim>& H) const {
+    const Symmetric<Real, Dim> strain = symmetric_part(H);
+    const Symmetric<Real, Dim> shape = deviator(strain);
+    Symmetric<Real, Dim> trial = rotate(stress, H);
+    const Real pressure = Real(bulk) * trace(strain);
+    for (int k = 0; k < trial.size; ++k) trial[k] = trial[k] + Real(2) * Real(shear) * shape[k];
+    for (int k = 0; k < 3; ++k) trial[k] = trial[k] + pressure;
+    return trial;
+  }
+
+  /// σ : C⁻¹ : σ / 2 = J2/(2G) + σ_m²/(2K), J/m³.
+  template <class Real, int Dim>
+  JAXMPM_INLINE Real energy(const Symmetric<Real, Dim>& stress) const {
+    const Real m = mean(stress);
+    return Real(0.5) * (half_square(deviator(stress)) / Real(shear) + m * m / Real(bulk));
+  }
+
+  /// K + 4G/3: stiffness of a plane pressure wave, Pa.
+  JAXMPM_INLINE Scalar wave_modulus() const { return bulk + Scalar(4.0 / 3.0) * shear; }
+
+  /// Speed of a pressure wave at density ρ0 (1 + e), m/s.
+  template <class Real>
+  JAXMPM_INLINE Real wave_speed(Scalar density, Real compression) const {
+    return sqrt(Real(wave_modulus()) / (Real(density) * (Real(1) + compression)));
+  }
+};
+
+/// Elastic constants of a material of the deck.
+struct ElasticModuli {
+  double bulk = 0, shear = 0;  // Pa
+  double poisson_ratio() const { return (3 * bulk - 2 * shear) / (2 * (3 * bulk + shear)); }
+  double lame() const { return bulk - 2 * shear / 3; }
+
+  static ElasticModuli from_young(double young, double poisson) { return {young / (3 * (1 - 2 * poisson)), young / (2 * (1 + poisson))}; }
+};
+
+inline ElasticModuli elastic_moduli(const deck::LinearElastic& m) { return ElasticModuli::from_young(m.youngs_modulus, m.poisson_ratio); }
+inline ElasticModuli elastic_moduli(const deck::NeoHookean& m) { return ElasticModuli::from_young(m.youngs_modulus, m.poisson_ratio); }
+
+/// A fluid: K = ρ0 c², no shear stiffness, so that its Poisson ratio is 1/2.
+inline ElasticModuli elastic_moduli(const deck::Newtonian& m) { return {m.density * m.sound_speed * m.sound_speed, 0}; }
+
+/// From the two constants that the deck gives (the reader has checked that there are exactly two).
+inline ElasticModuli elastic_moduli(const deck::DruckerPrager& m) {
+  if (!m.bulk_modulus) return ElasticModuli::from_young(m.youngs_modulus.value(), m.poisson_ratio.value());
+  const double bulk = *m.bulk_modulus;
+  if (!m.youngs_modulus) return {bulk, 3 * bulk * (1 - 2 * m.poisson_ratio.value()) / (2 * (1 + m.poisson_ratio.value()))};
+  return {bulk, 3 * bulk * *m.youngs_modulus / (9 * bulk - *m.youngs_modulus)};
+}
+
+inline ElasticModuli elastic_moduli(const deck::Material& material) {
+  return std::visit([](const auto& m) { return elastic_moduli(m); }, material);
+}
+
+}  // namespace jaxmpm

@@ -1,0 +1,123 @@
+#pragma once
+// Weakly compressible Newtonian fluid (Du & He 2025, Eqs 19–20): p = c²(ρ − ρ0), s = 2μ dev d. The paper prints the increment Δd and its
+// determinant where the rate d and the trace are meant: s = 2μ dev d and ρ ← ρ/(1 + tr Δd). Two laws, so that an inviscid fluid carries no
+// history.
+#include <limits>
+
+#include "deck/deck.hpp"
+#include "materials/material.hpp"
+
+namespace jaxmpm {
+
+/// The equation of state, shared by both laws; e = ρ/ρ0 − 1.
+template <class Scalar>
+struct WeaklyCompressible {
+  Scalar density;              // ρ0, kg/m³
+  Scalar sound_speed;          // c, m/s: at least ten times the largest velocity
+  Scalar minimum_compression;  // e below which pressure, and the density with it, is cut: −limit/(ρ0 c²); −∞ without a tension limit
+
+  static WeaklyCompressible from(const deck::Newtonian& m) {
+    const double bulk = m.density * m.sound_speed * m.sound_speed;
+    const double least = m.tension_limit ? -*m.tension_limit / bulk : -std::numeric_limits<double>::infinity();
+    return {Scalar(m.density), Scalar(m.sound_speed), Scalar(least)};
+  }
+
+  template <class Real, int Dim>
+  JAXMPM_INLINE Real wave_speed(Real, const Real*) const {
+    return Real(sound_speed);
+  }
+
+  /// ρ ∫ p/ρ² dρ = ρ0 c² ((1 + e) ln(1 + e) − e), J per m³ of current volume.
+  template <class Real, int Dim>
+  JAXMPM_INLINE Real energy(Real e, const Real*) const {
+    return Real(bulk()) * (e * e - (Real(1) + e) * minus_log_one_plus(e));
+  }
+
+  template <int Dim>
+  static constexpr JAXMPM_INLINE int plastic_strain_index() {
+    return -1;
+  }
+
+ protected:
+  JAXMPM_INLINE Scalar bulk() const { return density * sound_speed * sound_speed; }
+
+  template <class Real, int Dim>
+  JAXMPM_INLINE void advance(const Matrix<Real, Dim>& H, Real& compression) const {
+    compression = max(compress(compression, trace(H)), Real(minimum_compression));
+  }
+
+  template <class Real, int Dim>
+  JAXMPM_INLINE void add_pressure(Real e, Symmetric<Real, Dim>& stress) const {
+    const Real pressure = Real(bulk()) * e;
+    for (int k = 0; k < 3; ++k) stress[k] = stress[k] - pressure;
+  }
+};
+
+/// μ = 0.
+template <class Scalar>
+struct InviscidFluid : WeaklyCompressible<Scalar> {
+  static InviscidFluid from(const deck::Newtonian& m) { return {WeaklyCompressible<Scalar>::from(m)}; }
+
+  template <int Dim>
+  static constexpr JAXMPM_INLINE int history_size() {
+    return 0;
+  }
+
+  template <class Real, int Dim>
+  JAXMPM_INLINE Real update(const Matrix<Real, Dim>& H, Real, Real& compression, Real*) const {
+    this->advance(H, compression);
+    return Real(0);
+  }
+
+  template <class Real, int Dim>
+  JAXMPM_INLINE Symmetric<Real, Dim> stress(Real compression, const Real*) const {
+    Symmetric<Real, Dim> sigma{};
+    this->add_pressure(compression, sigma);
+    return sigma;
+  }
+
+  JAXMPM_INLINE Scalar diffusivity() const { return Scalar(0); }
+
+  template <class Real, int Dim>
+  JAXMPM_INLINE void start(const Symmetric<Real, Dim>&, Real, Real*) const {}  // the pressure is in the compression
+};
+
+/// μ > 0; the history is the viscous stress of the last step.
+template <class Scalar>
+struct ViscousFluid : WeaklyCompressible<Scalar> {
+  Scalar viscosity;  // μ, Pa s
+
+  static ViscousFluid from(const deck::Newtonian& m) { return {WeaklyCompressible<Scalar>::from(m), Scalar(m.viscosity)}; }
+
+  template <int Dim>
+  static constexpr JAXMPM_INLINE int history_size() {
+    return Symmetric<Scalar, Dim>::size;
+  }
+
+  /// s = 2μ dev d with d = sym H/Δt; dissipates s : d Δt = s : s/(2μ) Δt.
+  template <class Real, int Dim>
+  JAXMPM_INLINE Real update(const Matrix<Real, Dim>& H, Real dt, Real& compression, Real* history) const {
+    this->advance(H, compression);
+    const Real per_strain = Real(2) * Real(viscosity) / dt;
+    const Symmetric<Real, Dim> shape = deviator(symmetric_part(H));
+    for (int k = 0; k < shape.size; ++k) history[k] = per_strain * shape[k];
+    return Real(2) * per_strain * half_square(shape);
+  }
+
+  template <class Real, int Dim>
+  JAXMPM_INLINE Symmetric<Real, Dim> stress(Real compression, const Real* history) const {
+    Symmetric<Real, Dim> sigma = read_symmetric<Real, Dim>(history);
+    this->add_pressure(compression, sigma);
+    return sigma;
+  }
+
+  /// 4μ/(3ρ0): the damping of a plane pressure wave, the fastest that 2μ dev d causes.
+  JAXMPM_INLINE Scalar diffusivity() const { return Scalar(4.0 / 3.0) * viscosity / this->density; }
+
+  template <class Real, int Dim>
+  JAXMPM_INLINE void start(const Symmetric<Real, Dim>& stress, Real, Real* history) const {
+    write_symmetric(deviator(stress), history);
+  }
+};
+
+}  // namespace jaxmpm
