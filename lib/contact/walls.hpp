@@ -1,0 +1,193 @@
+#pragma once
+// Domain faces on the grid: the mirror images beyond a wall, folded onto their twins (docs/theory.md, "Grid update").
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "scene/model.hpp"
+
+namespace jaxmpm {
+
+/// Faces of the domain in the precision of the step.
+template <class T, int Dim>
+struct Walls {
+  struct Face {
+    deck::ContactKind kind;
+    std::vector<double> to;
+    std::vector<T> coefficient;
+    int segment_axis;
+    /// Friction coefficient at a node: that of the first segment with X ≤ to.
+    T friction(const std::array<int, Dim>& node) const {
+      if (coefficient.empty()) return T(0);
+      const std::size_t last = coefficient.size() - 1;
+      for (std::size_t k = 0; k < to.size() && k < last; ++k)
+        if (node[std::size_t(segment_axis)] <= to[k]) return coefficient[k];
+      return coefficient[last];
+    }
+    bool always() const { return kind == deck::ContactKind::slip || kind == deck::ContactKind::no_slip; }
+  };
+  std::array<int, Dim> cells;
+  std::array<Face, 2 * Dim> faces;
+
+  explicit Walls(const Model& model) {
+    for (int d = 0; d < Dim; ++d) cells[std::size_t(d)] = model.cells[std::size_t(d)];
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+      const FaceLaw& law = model.faces[f];
+      faces[f] = {law.kind, law.to, {law.coefficient.begin(), law.coefficient.end()}, law.segment_axis};
+    }
+  }
+  /// Whether a node is a ghost, a twin or on a face along some axis: everywhere else the update is plain division.
+  bool near_face(int axis, int node) const { return node <= 1 || node >= cells[std::size_t(axis)] - 1; }
+};
+
+/// Mass and predicted momentum P of a node before any wall acts.
+template <class T, int Dim>
+struct NodeSums {
+  T mass;
+  Vector<T, Dim> momentum;
+};
+
+/// What contact did at one node: impulse given to the material, N s, and energy lost to friction, J.
+template <class T, int Dim>
+struct NodeContact {
+  std::array<std::array<T, Dim>, 2 * Dim> impulse{};
+  T friction_work = 0;
+};
+
+/// Velocity of any node in the mirrored domain. `Raw` is a callable Index → NodeSums (zero mass where there is nothing); `Obstacles` a callable
+/// (Index, mass, velocity&) that applies the rigid obstacles at an inner node.
+template <class T, int Dim, class Raw, class Obstacles>
+class WallUpdate {
+  using Node = std::array<int, Dim>;
+  using V = Vector<T, Dim>;
+  const Walls<T, Dim>& walls_;
+  const Raw& raw_;
+  const Obstacles& obstacles_;
+  T cut_off_;
+
+  int n(int axis) const { return walls_.cells[std::size_t(axis)]; }
+  int reflect(int axis, int i) const { return i < 0 ? -i : (i > n(axis) ? 2 * n(axis) - i : i); }
+  /// Face that a ghost, face or twin node belongs to along an axis, −1 for none.
+  int face_of(int axis, int i) const { return i <= 1 && i >= -1 ? 2 * axis : (i >= n(axis) - 1 && i <= n(axis) + 1 ? 2 * axis + 1 : -1); }
+  int plane(int face) const { return face % 2 == 0 ? 0 : n(face / 2); }
+  T inward(int face) const { return face % 2 == 0 ? T(1) : T(-1); }
+  T sign(int face, int component) const {
+    return component == face / 2 || walls_.faces[std::size_t(face)].kind == deck::ContactKind::no_slip ? T(-1) : T(1);
+  }
+
+  bool inside(const Node& node) const {
+    for (int d = 0; d < Dim; ++d)
+      if (node[std::size_t(d)] < 0 || node[std::size_t(d)] > n(d)) return false;
+    return true;
+  }
+
+  /// Whether the material presses on a face along the lattice line through `node`.
+  bool in_contact(int face, Node node) const {
+    if (walls_.faces[std::size_t(face)].always()) return true;
+    for (int d = 0; d < Dim; ++d) node[std::size_t(d)] = d == face / 2 ? plane(face) : reflect(d, node[std::size_t(d)]);
+    const NodeSums<T, Dim> f = raw_(node);
+    return f.mass > cut_off_ && f.momentum[face / 2] * inward(face) < 0;
+  }
+
+  /// Sums of a node with the twins along the axes of `ghosts` (face per axis or −1) folded onto it, axis `skip` left out.
+  NodeSums<T, Dim> folded(const Node& node, const std::array<int, Dim>& twin_face, int skip) const {
+    NodeSums<T, Dim> sum = raw_(node);
+    for (int subset = 1; subset < (1 << Dim); ++subset) {
+      Node image = node;
+      V s;
+      for (int c = 0; c < Dim; ++c) s[c] = T(1);
+      bool valid = true;
+      for (int axis = 0; axis < Dim && valid; ++axis) {
+        if (!(subset >> axis & 1)) continue;
+        const int face = twin_face[std::size_t(axis)];
+        valid = axis != skip && face >= 0;
+        if (!valid) break;
+        image[std::size_t(axis)] = 2 * plane(face) - node[std::size_t(axis)];
+        for (int c = 0; c < Dim; ++c) s[c] *= sign(face, c);
+      }
+      if (!valid) continue;
+      const NodeSums<T, Dim> other = raw_(image);
+      sum.mass += other.mass;
+      for (int c = 0; c < Dim; ++c) sum.momentum[c] += s[c] * other.momentum[c];
+    }
+    return sum;
+  }
+
+ public:
+  WallUpdate(const Walls<T, Dim>& walls, const Raw& raw, const Obstacles& obstacles, T cut_off)
+      : walls_(walls), raw_(raw), obstacles_(obstacles), cut_off_(cut_off) {}
+
+  /// Velocity after walls and obstacles. `contact` (may be null) receives what happened at an inner node.
+  V velocity(Node node, NodeContact<T, Dim>* contact) const {
+    V mirror;
+    for (int c = 0; c < Dim; ++c) mirror[c] = T(1);
+    const Node asked = node;
+    std::array<int, Dim> on_face, twin_face;  // face in contact that the node lies on, or whose ghost is its twin
+    for (int axis = 0; axis < Dim; ++axis) {
+      const auto a = std::size_t(axis);
+      on_face[a] = twin_face[a] = -1;
+      const int face = face_of(axis, asked[a]);
+      if (face < 0 || !in_contact(face, asked)) continue;
+      if (asked[a] < 0 || asked[a] > n(axis)) {
+        node[a] = reflect(axis, asked[a]);
+        for (int c = 0; c < Dim; ++c) mirror[c] *= sign(face, c);
+      }
+      if (node[a] == plane(face)) on_face[a] = face;
+      else twin_face[a] = face;
+    }
+    const NodeSums<T, Dim> sum = folded(node, twin_face, -1);
+    V v;
+    for (int c = 0; c < Dim; ++c) v[c] = T(0);
+    if (!(sum.mass > cut_off_)) return v;
+    for (int c = 0; c < Dim; ++c) v[c] = sum.momentum[c] / sum.mass;
+    apply_faces(node, on_face, twin_face, sum.mass, v, contact);
+    if (inside(node)) obstacles_(node, sum.mass, v);
+    for (int c = 0; c < Dim; ++c) v[c] *= mirror[c];
+    return v;
+  }
+
+ private:
+  void apply_faces(const Node& node, const std::array<int, Dim>& on_face, const std::array<int, Dim>& twin_face, T mass, V& v, NodeContact<T, Dim>* contact) const {
+    const V free = v;
+    for (int axis = 0; axis < Dim; ++axis)  // normals first
+      if (on_face[std::size_t(axis)] >= 0) v[axis] = T(0);
+    for (int axis = 0; axis < Dim; ++axis) {
+      const int face = on_face[std::size_t(axis)];
+      if (face < 0) continue;
+      const auto kind = walls_.faces[std::size_t(face)].kind;
+      if (!contact && (kind == deck::ContactKind::separate || kind == deck::ContactKind::slip)) continue;
+      Node ghost = node;
+      ghost[std::size_t(axis)] += face % 2 == 0 ? -1 : 1;
+      const NodeSums<T, Dim> beyond = folded(ghost, twin_face, axis);
+      const T normal = -inward(face) * (mass * free[axis] + T(2) * beyond.momentum[axis]);
+      if (kind == deck::ContactKind::no_slip) {
+        for (int c = 0; c < Dim; ++c) v[c] = T(0);
+      } else if (kind == deck::ContactKind::friction) {
+        rub(axis, walls_.faces[std::size_t(face)].friction(node) * std::max(T(0), normal) / mass, mass, v, contact);
+      }
+      if (contact) report(face, axis, kind, normal, mass, free, v, beyond, *contact);
+    }
+  }
+  /// Takes `loss` (m/s) off the velocity tangential to a face, to rest at most.
+  void rub(int axis, T loss, T mass, V& v, NodeContact<T, Dim>* contact) const {
+    T square = 0;
+    for (int c = 0; c < Dim; ++c)
+      if (c != axis) square += v[c] * v[c];
+    if (!(square > 0)) return;
+    const T scale = std::max(T(0), T(1) - loss / std::sqrt(square));
+    for (int c = 0; c < Dim; ++c)
+      if (c != axis) v[c] *= scale;
+    if (contact) contact->friction_work += T(0.5) * mass * square * (T(1) - scale * scale);
+  }
+  void report(int face, int axis, deck::ContactKind kind, T normal, T mass, const V& free, const V& v, const NodeSums<T, Dim>& beyond, NodeContact<T, Dim>& contact) const {
+    auto& impulse = contact.impulse[std::size_t(face)];
+    for (int c = 0; c < Dim; ++c) {
+      if (c == axis) impulse[std::size_t(c)] += inward(face) * normal;
+      else if (kind == deck::ContactKind::friction) impulse[std::size_t(c)] += mass * (v[c] - free[c]);
+      else if (kind == deck::ContactKind::no_slip) impulse[std::size_t(c)] -= mass * free[c] + T(2) * beyond.momentum[c];
+    }
+  }
+};
+
+}  // namespace jaxmpm

@@ -1,0 +1,186 @@
+#pragma once
+// Portable SIMD: a pack of N lanes on the compiler's own vector type, so that g++ and nvcc (host side) both take it. Widths 2 to 16.
+// Packs behave as scalars (see tensor.hpp); comparisons give a Mask for select(). Rows and transposes serve the transfer kernels.
+#include <cmath>
+#include <cstring>
+#include <type_traits>
+#include <utility>
+
+#include "core/macros.hpp"
+
+namespace jaxmpm {
+
+#if defined(__AVX512F__)
+inline constexpr int native_bytes = 64;
+#elif defined(__AVX__)
+inline constexpr int native_bytes = 32;
+#else
+inline constexpr int native_bytes = 16;
+#endif
+/// Lanes of T in the widest vector register that this build may use.
+template <class T>
+inline constexpr int native_lanes = native_bytes / int(sizeof(T));
+
+namespace pack_detail {
+// Written out, as compilers lose the attribute where its size depends on a template parameter.
+template <class T, int N>
+struct Register;
+#define JAXMPM_REGISTER(T, N)                            \
+  template <>                                            \
+  struct Register<T, N> {                                \
+    typedef T type __attribute__((vector_size(N * sizeof(T)))); \
+  };
+#define JAXMPM_REGISTERS(T) JAXMPM_REGISTER(T, 2) JAXMPM_REGISTER(T, 4) JAXMPM_REGISTER(T, 8) JAXMPM_REGISTER(T, 16)
+JAXMPM_REGISTERS(float)
+JAXMPM_REGISTERS(double)
+JAXMPM_REGISTERS(int)
+JAXMPM_REGISTERS(long)
+#undef JAXMPM_REGISTERS
+#undef JAXMPM_REGISTER
+}  // namespace pack_detail
+
+template <class T, int N>
+struct Mask {
+  using Lane = std::conditional_t<sizeof(T) == 4, int, long>;
+  using Native = typename pack_detail::Register<Lane, N>::type;
+  Native m;
+  friend JAXMPM_INLINE Mask operator&(Mask a, Mask b) { return {a.m & b.m}; }
+  friend JAXMPM_INLINE Mask operator|(Mask a, Mask b) { return {a.m | b.m}; }
+  friend JAXMPM_INLINE Mask operator&&(Mask a, Mask b) { return {a.m & b.m}; }
+  friend JAXMPM_INLINE Mask operator||(Mask a, Mask b) { return {a.m | b.m}; }
+  friend JAXMPM_INLINE Mask operator!(Mask a) { return {~a.m}; }
+  friend JAXMPM_INLINE bool any(Mask a) {
+    Lane r = 0;
+    for (int i = 0; i < N; ++i) r |= a.m[i];
+    return r != 0;
+  }
+};
+
+template <class T, int N>
+struct Pack {
+  using Native = typename pack_detail::Register<T, N>::type;
+  using Scalar = T;
+  static constexpr int lanes = N;
+  Native v;
+
+  Pack() = default;
+  JAXMPM_INLINE Pack(T s) : v(s - Native{}) {}  // all lanes alike
+  JAXMPM_INLINE explicit Pack(Native n) : v(n) {}
+  JAXMPM_INLINE T operator[](int lane) const { return v[lane]; }
+
+  static JAXMPM_INLINE Pack load(const T* p) {
+    Pack r;
+    std::memcpy(&r.v, p, sizeof r.v);
+    return r;
+  }
+  JAXMPM_INLINE void store(T* p) const { std::memcpy(p, &v, sizeof v); }
+
+  friend JAXMPM_INLINE Pack operator+(Pack a, Pack b) { return Pack(a.v + b.v); }
+  friend JAXMPM_INLINE Pack operator-(Pack a, Pack b) { return Pack(a.v - b.v); }
+  friend JAXMPM_INLINE Pack operator*(Pack a, Pack b) { return Pack(a.v * b.v); }
+  friend JAXMPM_INLINE Pack operator/(Pack a, Pack b) { return Pack(a.v / b.v); }
+  friend JAXMPM_INLINE Pack operator-(Pack a) { return Pack(-a.v); }
+  JAXMPM_INLINE Pack& operator+=(Pack b) { return v += b.v, *this; }
+  JAXMPM_INLINE Pack& operator-=(Pack b) { return v -= b.v, *this; }
+  JAXMPM_INLINE Pack& operator*=(Pack b) { return v *= b.v, *this; }
+  JAXMPM_INLINE Pack& operator/=(Pack b) { return v /= b.v, *this; }
+
+  friend JAXMPM_INLINE Mask<T, N> operator<(Pack a, Pack b) { return {a.v < b.v}; }
+  friend JAXMPM_INLINE Mask<T, N> operator>(Pack a, Pack b) { return {a.v > b.v}; }
+  friend JAXMPM_INLINE Mask<T, N> operator<=(Pack a, Pack b) { return {a.v <= b.v}; }
+  friend JAXMPM_INLINE Mask<T, N> operator>=(Pack a, Pack b) { return {a.v >= b.v}; }
+  friend JAXMPM_INLINE Mask<T, N> operator==(Pack a, Pack b) { return {a.v == b.v}; }
+  friend JAXMPM_INLINE Mask<T, N> operator!=(Pack a, Pack b) { return {a.v != b.v}; }
+
+  friend JAXMPM_INLINE Pack select(Mask<T, N> c, Pack a, Pack b) { return Pack(c.m ? a.v : b.v); }
+  friend JAXMPM_INLINE Pack max(Pack a, Pack b) { return Pack(a.v > b.v ? a.v : b.v); }
+  friend JAXMPM_INLINE Pack min(Pack a, Pack b) { return Pack(a.v < b.v ? a.v : b.v); }
+  friend JAXMPM_INLINE Pack abs(Pack a) { return max(a, -a); }
+
+  /// Lane by lane through memory: the compiler turns the loop into vector instructions where there are some.
+  template <class F>
+  JAXMPM_INLINE Pack map(F f) const {
+    alignas(sizeof(Native)) T lane[N];
+    store(lane);
+    for (int i = 0; i < N; ++i) lane[i] = f(lane[i]);
+    return load(lane);
+  }
+  friend JAXMPM_INLINE Pack sqrt(Pack a) {
+    return a.map([](T x) { return std::sqrt(x); });
+  }
+  friend JAXMPM_INLINE Pack log(Pack a) {
+    return a.map([](T x) { return std::log(x); });
+  }
+  friend JAXMPM_INLINE Pack log1p(Pack a) {
+    return a.map([](T x) { return std::log1p(x); });
+  }
+  friend JAXMPM_INLINE Pack exp(Pack a) {
+    return a.map([](T x) { return std::exp(x); });
+  }
+};
+
+/// Largest lane.
+template <class T, int N>
+JAXMPM_INLINE T largest(Pack<T, N> a) {
+  T r = a[0];
+  for (int i = 1; i < N; ++i) r = a[i] > r ? a[i] : r;
+  return r;
+}
+
+/// a·b + c; the compiler contracts it to one instruction where the machine has it.
+template <class Real>
+JAXMPM_INLINE Real fma(Real a, Real b, Real c) { return a * b + c; }
+
+/// Calls f(integral_constant 0) … f(integral_constant N−1): a loop whose index is known at compile time.
+template <class F, int... I>
+JAXMPM_INLINE void static_for(std::integer_sequence<int, I...>, F&& f) { (f(std::integral_constant<int, I>{}), ...); }
+template <int N, class F>
+JAXMPM_INLINE void static_for(F&& f) { static_for(std::make_integer_sequence<int, N>{}, f); }
+
+namespace pack_detail {
+/// {a[h], b[h], a[h+1], b[h+1], …} with h = 0 (Half 0) or N/2 (Half 1).
+template <int Half, class T, int N, int... I>
+JAXMPM_INLINE Pack<T, N> interleave(Pack<T, N> a, Pack<T, N> b, std::integer_sequence<int, I...>) {
+  return Pack<T, N>(__builtin_shufflevector(a.v, b.v, (Half * (N / 2) + I / 2 + (I % 2) * N)...));
+}
+template <int Offset, class T, int N, int... I>
+JAXMPM_INLINE Pack<T, N> repeat_quad(Pack<T, N> a, std::integer_sequence<int, I...>) {
+  return Pack<T, N>(__builtin_shufflevector(a.v, a.v, (Offset + I % 4)...));
+}
+template <int Offset, class T, int N, int... I>
+JAXMPM_INLINE Pack<T, N> spread_quad(Pack<T, N> a, std::integer_sequence<int, I...>) {
+  return Pack<T, N>(__builtin_shufflevector(a.v, a.v, (Offset + I / 4)...));
+}
+}  // namespace pack_detail
+
+/// Transposes N packs of N lanes in place: log2 N rounds of perfect shuffles.
+template <class T, int N>
+JAXMPM_INLINE void transpose(Pack<T, N>* r) {
+  constexpr auto lanes = std::make_integer_sequence<int, N>{};
+  for (int round = 1; round < N; round *= 2) {
+    Pack<T, N> t[N];
+    for (int i = 0; i < N / 2; ++i) {
+      t[2 * i] = pack_detail::interleave<0>(r[i], r[i + N / 2], lanes);
+      t[2 * i + 1] = pack_detail::interleave<1>(r[i], r[i + N / 2], lanes);
+    }
+    for (int i = 0; i < N; ++i) r[i] = t[i];
+  }
+}
+
+/// Quad K of a row in memory ({r[4K] … r[4K+3]}), repeated over all lanes.
+template <int K, int N, class T>
+JAXMPM_INLINE Pack<T, N> repeat_quad(const T* row) {
+  const auto whole = Pack<T, N>::load(row + 4 * K / N * N);
+  if constexpr (N == 4) return whole;
+  else return pack_detail::repeat_quad<4 * K % N>(whole, std::make_integer_sequence<int, N>{});
+}
+
+/// Part C of quad K of a row with every value four times: {r[4K+C·N/4] ×4, r[4K+C·N/4+1] ×4, …}.
+template <int K, int C, int N, class T>
+JAXMPM_INLINE Pack<T, N> spread_quad(const T* row) {
+  constexpr int first = 4 * K + C * (N / 4);
+  if constexpr (N == 4) return Pack<T, N>(row[first]);
+  else return pack_detail::spread_quad<first % N>(Pack<T, N>::load(row + first / N * N), std::make_integer_sequence<int, N>{});
+}
+
+}  // namespace jaxmpm

@@ -1,0 +1,182 @@
+#pragma once
+// Grid to particles (Eqs 15–18, B.1, B.2) and the stress that follows from it: one tile gathers from its arena, moves its particles and advances its material.
+#include "kernels/p2g.hpp"
+
+namespace jaxmpm {
+
+/// Adds up the nodes of a row: per quad of lanes. Takes N/4 packs and returns one that holds their sums side by side.
+template <class T, int N>
+JAXMPM_INLINE Pack<T, N> sum_quads(const Pack<T, N>* x) {
+  if constexpr (N == 4) {
+    return x[0];
+  } else if constexpr (N == 8) {
+    return Pack<T, N>(__builtin_shufflevector(x[0].v, x[1].v, 0, 1, 2, 3, 8, 9, 10, 11)) + Pack<T, N>(__builtin_shufflevector(x[0].v, x[1].v, 4, 5, 6, 7, 12, 13, 14, 15));
+  } else {
+    static_assert(N == 16);
+    const auto half = [](const Pack<T, N>& a, const Pack<T, N>& b) {  // {a0+a2, a1+a3, b0+b2, b1+b3} of quads
+      return Pack<T, N>(__builtin_shufflevector(a.v, b.v, 0, 1, 2, 3, 4, 5, 6, 7, 16, 17, 18, 19, 20, 21, 22, 23)) +
+             Pack<T, N>(__builtin_shufflevector(a.v, b.v, 8, 9, 10, 11, 12, 13, 14, 15, 24, 25, 26, 27, 28, 29, 30, 31));
+    };
+    const Pack<T, N> ab = half(x[0], x[1]), cd = half(x[2], x[3]);
+    return Pack<T, N>(__builtin_shufflevector(ab.v, cd.v, 0, 1, 2, 3, 8, 9, 10, 11, 16, 17, 18, 19, 24, 25, 26, 27)) +
+           Pack<T, N>(__builtin_shufflevector(ab.v, cd.v, 4, 5, 6, 7, 12, 13, 14, 15, 20, 21, 22, 23, 28, 29, 30, 31));
+  }
+}
+
+/// Where the gathered quads of a particle lie in its row.
+template <class Sch>
+struct GatheredQuads {
+  static constexpr int value = 0, moments = 1, slopes = Sch::g2p_moments ? 1 + Sch::Dim : 1;
+  static constexpr int change = 1 + Sch::Dim * (int(Sch::g2p_moments) + int(Sch::g2p_slopes));  // FLIP's Σ φ Δv
+  static constexpr int count = change + (Sch::flip ? 1 : 0);
+  static constexpr int per_store = RowShape<typename Sch::T, Sch::S>::N / 4;
+  static constexpr int padded = (count + per_store - 1) / per_store * per_store;
+};
+
+/// Σ over the stencil of factor × node, for one particle: quads of sums, one pack per (quad, lane of the row); still to be added along the row.
+template <class Sch, bool only_value, class Stencil>
+JAXMPM_INLINE void gather(const StencilRows<Sch>& rows, const Stencil& t, int l, Pack<typename Sch::T, RowShape<typename Sch::T, Sch::S>::N>* sums) {
+  using T = typename Sch::T;
+  using Row = RowShape<T, Sch::S>;
+  using G = GatheredQuads<Sch>;
+  constexpr int S = Sch::S, N = Row::N, last = Sch::Dim - 1;
+  constexpr bool moments = Sch::g2p_moments && !only_value, slopes = Sch::g2p_slopes && !only_value;
+  using R = Pack<T, N>;
+  const T* z = t.last.row(l);
+  static_for<Row::pieces>([&](auto piece) {
+    constexpr int c = piece;
+    R sum(T(0)), d[2] = {R(T(0)), R(T(0))}, g[2] = {R(T(0)), R(T(0))};  // Σ w, and with d or g on one axis but the last
+    for (int a = 0; a < S; ++a) {
+      R line(T(0));
+      if constexpr (Sch::Dim == 2) {
+        line = rows.row[a][c];
+      } else {
+        R dy(T(0)), gy(T(0));
+        for (int b = 0; b < S; ++b) {
+          const R& x = rows.row[a * S + b][c];
+          line += R(t.w[1][b][l]) * x;
+          if constexpr (moments) dy += R(t.d[1][b][l]) * x;
+          if constexpr (slopes) gy += R(t.g[1][b][l]) * x;
+        }
+        const R wx(t.w[0][a][l]);
+        if constexpr (moments) d[1] += wx * dy;
+        if constexpr (slopes) g[1] += wx * gy;
+      }
+      sum += R(t.w[0][a][l]) * line;
+      if constexpr (moments) d[0] += R(t.d[0][a][l]) * line;
+      if constexpr (slopes) g[0] += R(t.g[0][a][l]) * line;
+    }
+    const auto put = [&](int quad, R value) { sums[quad] = c == 0 ? value : sums[quad] + value; };
+    const R w = spread_quad<Stencil::w_quad, c, N>(z);
+    if constexpr (only_value) {
+      put(0, sum * w);
+    } else {
+      put(G::value, sum * w);
+      if constexpr (moments) {
+        for (int k = 0; k < last; ++k) put(G::moments + k, d[k] * w);
+        put(G::moments + last, sum * spread_quad<Stencil::d_quad, c, N>(z));
+      }
+      if constexpr (slopes) {
+        for (int k = 0; k < last; ++k) put(G::slopes + k, g[k] * w);
+        put(G::slopes + last, sum * spread_quad<Stencil::g_quad, c, N>(z));
+      }
+    }
+  });
+}
+
+/// What the gather knows of the domain: cells along each axis, to catch particles that leave it.
+template <int Dim>
+struct DomainBounds { Index<Dim> cells; };
+
+/// Moves W particles and advances their material.
+template <class Sch>
+JAXMPM_INLINE void update_particles(Particles<typename Sch::T, Sch::Dim>& p, std::size_t s, int count, const Pack<typename Sch::T, batch<typename Sch::T>>* gathered,
+                                    const MaterialKernel<typename Sch::T, Sch::Dim>& material, const StepConstants<typename Sch::T>& step, bool account,
+                                    const DomainBounds<Sch::Dim>& domain, TileReport& report) {
+  using T = typename Sch::T;
+  using G = GatheredQuads<Sch>;
+  constexpr int W = batch<T>, Dim = Sch::Dim;
+  using P = Pack<T, W>;
+  const auto component = [&](int quad, int c) { return gathered[4 * quad + 1 + c]; };
+  P speed2(T(0)), moved(T(0));
+  for (int c = 0; c < Dim; ++c) {
+    const P pic = component(G::value, c);
+    P v = pic;
+    if constexpr (Sch::flip) {
+      const P blend(step.flip_fraction);
+      v = blend * (load(p.velocity[std::size_t(c)].data() + s, count) + component(G::change, c)) + (P(T(1)) - blend) * pic;
+    }
+    store(p.velocity[std::size_t(c)].data() + s, v, count);
+    speed2 += v * v;
+    const P dX = P(step.dt / step.cell_size) * pic;
+    moved = max(moved, abs(dX));
+    alignas(64) T move[W];
+    dX.store(move);
+    double* X = p.position[std::size_t(c)].data() + s;
+    const double upper = domain.cells[std::size_t(c)];
+    int outside = 0;
+    for (int l = 0; l < count; ++l) {
+      X[l] += double(move[l]);
+      outside |= int(!(X[l] >= 0.0)) | int(!(X[l] <= upper));
+    }
+    if (outside) report.sound = false;
+  }
+  const T slope_scale = T(1) / step.cell_size;
+  const T moment_scale = Sch::S > 2 ? T(1 / Bspline<Sch::S>::second_moment) / step.cell_size : T(0);
+  if constexpr (Sch::affine) {
+    constexpr int from = Sch::affine_by_moments ? G::moments : G::slopes;
+    const P scale(Sch::affine_by_moments ? moment_scale : slope_scale);
+    for (int c = 0; c < Dim; ++c)
+      for (int k = 0; k < Dim; ++k) store(p.affine[std::size_t(c * Dim + k)].data() + s, scale * component(from + k, c), count);
+  }
+  constexpr int from = Sch::mls ? G::moments : G::slopes;
+  const P rate(Sch::mls ? moment_scale : slope_scale);
+  alignas(64) T H[Dim * Dim][W], speed[W];
+  for (int c = 0; c < Dim; ++c)
+    for (int k = 0; k < Dim; ++k) {
+      const P gradient = rate * component(from + k, c);
+      (P(step.dt) * gradient).store(H[c * Dim + k]);
+      if (!p.gradient.empty()) store(p.gradient[std::size_t(c * Dim + k)].data() + s, gradient, count);
+    }
+  sqrt(speed2).store(speed);
+  material.update(p, s, count, H, speed, step.dt, account, report);
+  report.displacement = std::max(report.displacement, double(largest(moved)));
+}
+
+/// Gathers to particles [begin, end) of a body from `arena` and advances their material. `origin`: node 0 of the arena.
+template <class Sch>
+TileReport g2p_tile(Particles<typename Sch::T, Sch::Dim>& p, std::size_t begin, std::size_t end, const MaterialKernel<typename Sch::T, Sch::Dim>& material,
+                    const StepConstants<typename Sch::T>& step, bool account, const Index<Sch::Dim>& origin, const DomainBounds<Sch::Dim>& domain,
+                    const typename Sch::T* arena) {
+  using T = typename Sch::T;
+  using G = GatheredQuads<Sch>;
+  using R = typename StencilRows<Sch>::R;
+  constexpr int W = batch<T>;
+  StencilRows<Sch> rows[Sch::planes];
+  for (auto& r : rows) r.clear();
+  int current = -1;
+  TileReport report;
+  for (std::size_t s = begin; s < end; s += W) {
+    const int count = int(end - s < std::size_t(W) ? end - s : std::size_t(W));
+    const Stencils<Sch, Sch::g2p_moments, Sch::g2p_slopes> t(p, s, count, origin);
+    ParticleRows<T, 4 * G::padded> gathered;
+    for (int l = 0; l < count; ++l) {
+      if (t.base[l] != current) {
+        current = t.base[l];
+        for (int plane = 0; plane < Sch::planes; ++plane) rows[plane].load(arena + plane * Sch::arena_plane + current * 4);
+      }
+      R sums[G::padded];
+      for (int i = G::count; i < G::padded; ++i) sums[i] = R(T(0));
+      gather<Sch, false>(rows[0], t, l, sums);
+      if constexpr (Sch::flip) gather<Sch, true>(rows[Sch::planes - 1], t, l, sums + G::change);
+      for (int i = 0; i < G::padded; i += G::per_store) sum_quads<T, R::lanes>(sums + i).store(gathered.row(l) + 4 * i);
+    }
+    for (int l = count; l < W; ++l) std::memcpy(gathered.row(l), gathered.row(count - 1), sizeof(T) * std::size_t(4 * G::padded));
+    Pack<T, W> packs[decltype(gathered)::stride];
+    gathered.read(packs);
+    update_particles<Sch>(p, s, count, packs, material, step, account, domain, report);
+  }
+  return report;
+}
+
+}  // namespace jaxmpm

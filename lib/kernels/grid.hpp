@@ -1,0 +1,91 @@
+#pragma once
+// The grid between the transfers (Eqs 13–14): sums of the arenas, division, gravity, walls and obstacles; and the copy of the result to a tile's arena.
+#include <cstring>
+
+#include "contact/obstacles.hpp"
+#include "contact/walls.hpp"
+#include "kernels/scheme.hpp"
+
+namespace jaxmpm {
+
+/// Calls f(m, a, b, c) for the neighbours m of a block at distances a, b, c ∈ {−1, 0, 1} (c = 0 in 2D).
+template <int Dim>
+struct NeighbourOffset {
+  int a, b, c;
+  explicit NeighbourOffset(int m) : a(Dim == 2 ? m / 3 - 1 : m / 9 - 1), b(Dim == 2 ? m % 3 - 1 : m / 3 % 3 - 1), c(Dim == 2 ? 0 : m % 3 - 1) {}
+};
+
+/// Rows (runs along the last axis) that the arena of a neighbour shares with a block: f(own node, arena node, count).
+template <class Shape, int Dim, int S, class F>
+inline void for_each_shared_row(int a, int b, int c, F f) {
+  const Overlap x = overlap<Shape::B, S>(a), y = overlap<Shape::B, S>(b), z = overlap<Shape::B, S>(c);
+  if constexpr (Dim == 2) {
+    for (int i = 0; i < x.count; ++i) f(Shape::own_node(x.from + i, y.from, 0), Shape::arena_node(x.in_arena + i, y.in_arena, 0), y.count);
+  } else {
+    for (int i = 0; i < x.count; ++i)
+      for (int j = 0; j < y.count; ++j)
+        f(Shape::own_node(x.from + i, y.from + j, z.from), Shape::arena_node(x.in_arena + i, y.in_arena + j, z.in_arena), z.count);
+  }
+}
+
+/// Adds the arenas that reach block b, in their fixed order. own: [plane][node][4].
+template <class Sch>
+void sum_arenas(const Blocks<Sch::Dim>& blocks, std::size_t b, const typename Sch::T* arenas, typename Sch::T* own) {
+  using T = typename Sch::T;
+  std::memset(own, 0, sizeof(T) * Sch::own_size);
+  for (std::uint32_t k = blocks.first_contribution[b]; k < blocks.first_contribution[b + 1]; ++k) {
+    const Contribution& from = blocks.contributions[k];
+    const NeighbourOffset<Sch::Dim> n(int(from.neighbour));
+    const T* arena = arenas + std::size_t(from.tile) * Sch::arena_size;
+    for (int plane = 0; plane < Sch::planes; ++plane)
+      for_each_shared_row<typename Sch::Shape, Sch::Dim, Sch::S>(n.a, n.b, n.c, [&](int own_node, int arena_node, int count) {
+        const T* in = arena + plane * Sch::arena_plane + 4 * arena_node;
+        T* out = own + plane * Sch::own_plane + 4 * own_node;
+        for (int i = 0; i < 4 * count; ++i) out[i] += in[i];
+      });
+  }
+}
+
+/// Copies the grid around a tile's block into its arena.
+template <class Sch>
+void load_arena(const Blocks<Sch::Dim>& blocks, std::size_t block, const typename Sch::T* grid, typename Sch::T* arena) {
+  using T = typename Sch::T;
+  for (int m = 0; m < Sch::Shape::neighbours; ++m) {
+    const T* from = grid + std::size_t(blocks.neighbour[block * Sch::Shape::neighbours + std::size_t(m)]) * Sch::own_size;
+    const NeighbourOffset<Sch::Dim> n(m);
+    for (int plane = 0; plane < Sch::planes; ++plane)
+      for_each_shared_row<typename Sch::Shape, Sch::Dim, Sch::S>(-n.a, -n.b, -n.c, [&](int own_node, int arena_node, int count) {
+        std::memcpy(arena + plane * Sch::arena_plane + 4 * arena_node, from + plane * Sch::own_plane + 4 * own_node, sizeof(T) * 4 * std::size_t(count));
+      });
+  }
+}
+
+/// Gravity, mass cut-off and Δt: what the nodes of a step need besides their sums.
+template <class T, int Dim>
+struct GridConstants {
+  Vector<T, Dim> gravity_step;  // Δt g, m/s
+  T mass_cut_off;
+};
+
+/// Where no wall is near: P = p + Δt f + Δt m g, v = P / m. Sums become velocities in place ({m, v}, and FLIP's {–, v − p/m}).
+template <class Sch>
+void update_nodes(typename Sch::T* own, const GridConstants<typename Sch::T, Sch::Dim>& grid) {
+  using T = typename Sch::T;
+  for (int node = 0; node < Sch::Shape::cells; ++node) {
+    T* v = own + 4 * node;
+    const bool some = v[0] > grid.mass_cut_off;
+    const T inverse = some ? T(1) / v[0] : T(0);
+    for (int c = 0; c < Sch::Dim; ++c) {
+      const T pull = some ? grid.gravity_step[c] : T(0);
+      if constexpr (Sch::flip) {
+        T& change = own[Sch::own_plane + 4 * node + 1 + c];
+        change = change * inverse + pull;
+        v[1 + c] = v[1 + c] * inverse + change;
+      } else {
+        v[1 + c] = v[1 + c] * inverse + pull;
+      }
+    }
+  }
+}
+
+}  // namespace jaxmpm

@@ -1,0 +1,5 @@
+#include "kernels/material_kernel_impl.hpp"
+
+namespace jaxmpm {
+template std::unique_ptr<MaterialKernel<double, 2>> make_material_kernel(const deck::Material&);
+}

@@ -1,0 +1,155 @@
+#pragma once
+// Particles to grid (Eqs 10–12, B.1, B.2): one tile scatters mass, momentum and impulse of the internal force to its arena.
+#include "kernels/material_kernel.hpp"
+#include "kernels/stencil.hpp"
+
+namespace jaxmpm {
+
+/// Constants of one step.
+template <class T>
+struct StepConstants {
+  T dt, cell_size, flip_fraction;
+};
+
+/// Sums of one plane over the nodes of a stencil, kept in registers while consecutive particles share a base node.
+/// Along the axes before the last: rows[a·S + b] in 3D, rows[a] in 2D, each of `pieces` packs.
+template <class Sch>
+struct StencilRows {
+  using T = typename Sch::T;
+  using Row = RowShape<T, Sch::S>;
+  using R = Pack<T, Row::N>;
+  static constexpr int S = Sch::S, count = Sch::Dim == 3 ? S * S : S;
+  R row[count][Row::pieces];
+
+  static constexpr int place(int r) { return (Sch::Dim == 3 ? Sch::Shape::arena_node(r / S, r % S, 0) : Sch::Shape::arena_node(r, 0, 0)) * 4; }
+  JAXMPM_INLINE void clear() {
+    for (auto& r : row)
+      for (R& piece : r) piece = R(T(0));
+  }
+  JAXMPM_INLINE void add_to(T* base) const {
+    for (int r = 0; r < count; ++r)
+      for (int c = 0; c < Row::pieces; ++c) {
+        T* at = base + place(r) + c * Row::N;
+        (R::load(at) + row[r][c]).store(at);
+      }
+  }
+  JAXMPM_INLINE void load(const T* base) {
+    for (int r = 0; r < count; ++r)
+      for (int c = 0; c < Row::pieces; ++c) row[r][c] = R::load(base + place(r) + c * Row::N);
+  }
+};
+
+/// Which quads of a particle's coefficient row a plane takes: `rest` goes with w alone, moments + k with d on axis k, slopes + k with g on axis k; −1: not at all.
+struct PlaneQuads { int rest, moments, slopes; };
+
+/// rows += Σ over kinds of factor × quad, for one particle (lane l of the stencils).
+template <class Sch, int rest, int moments, int slopes, class Stencil>
+JAXMPM_INLINE void scatter(StencilRows<Sch>& rows, const Stencil& t, int l, const typename Sch::T* coefficients) {
+  using T = typename Sch::T;
+  using Row = RowShape<T, Sch::S>;
+  constexpr int S = Sch::S, N = Row::N, last = Sch::Dim - 1;
+  using R = Pack<T, N>;
+  const T* z = t.last.row(l);
+  static_for<Row::pieces>([&](auto piece) {
+    constexpr int c = piece;
+    const R w = spread_quad<Stencil::w_quad, c, N>(z);
+    R line(T(0));  // what goes with w on all axes but the last
+    if constexpr (rest >= 0) line = w * repeat_quad<rest, N>(coefficients);
+    if constexpr (moments >= 0) line += spread_quad<Stencil::d_quad, c, N>(z) * repeat_quad<moments + last, N>(coefficients);
+    if constexpr (slopes >= 0) line += spread_quad<Stencil::g_quad, c, N>(z) * repeat_quad<slopes + last, N>(coefficients);
+    R moment[2], slope[2];  // what goes with d or g on one of the other axes
+    static_for<Sch::Dim - 1>([&](auto axis) {
+      constexpr int k = axis;
+      if constexpr (moments >= 0) moment[k] = w * repeat_quad<moments + k, N>(coefficients);
+      if constexpr (slopes >= 0) slope[k] = w * repeat_quad<slopes + k, N>(coefficients);
+    });
+    const auto along = [&](int k, int a) {
+      R r(T(0));
+      if constexpr (moments >= 0) r = R(t.d[k][a][l]) * moment[k];
+      if constexpr (slopes >= 0) r += R(t.g[k][a][l]) * slope[k];
+      return r;
+    };
+    if constexpr (Sch::Dim == 2) {
+      for (int a = 0; a < S; ++a) rows.row[a][c] += R(t.w[0][a][l]) * line + along(0, a);
+    } else {
+      R y[S];
+      for (int b = 0; b < S; ++b) y[b] = along(1, b);
+      for (int a = 0; a < S; ++a) {
+        const R wx(t.w[0][a][l]), plane = wx * line + along(0, a);
+        for (int b = 0; b < S; ++b) rows.row[a * S + b][c] += R(t.w[1][b][l]) * plane + wx * y[b];
+      }
+    }
+  });
+}
+
+/// Coefficient quads of W particles: {m, m v} at rest, per axis m C Δx for the affine velocity, and −Δt V σ times 1/Δx (slopes) or Δx D⁻¹ (moments) for the force.
+template <class Sch>
+struct Coefficients {
+  using T = typename Sch::T;
+  static constexpr int Dim = Sch::Dim, W = batch<T>;
+  using P = Pack<T, W>;
+  static constexpr bool affine_and_force = Sch::affine && Sch::mls;  // both ride on d: one set of quads
+  static constexpr int affine = 1;
+  static constexpr int force = Sch::affine && !Sch::mls ? 1 + Dim : 1;
+  static constexpr int quads = force + Dim;
+  ParticleRows<T, 4 * quads> rows;
+
+  JAXMPM_INLINE Coefficients(const Particles<T, Dim>& p, std::size_t s, int count, const MaterialKernel<T, Dim>& material, const StepConstants<T>& step) {
+    P q[decltype(rows)::stride];
+    for (P& x : q) x = P(T(0));
+    const P m = load(p.mass.data() + s, count);
+    q[0] = m;
+    for (int c = 0; c < Dim; ++c) q[1 + c] = m * load(p.velocity[std::size_t(c)].data() + s, count);
+    if constexpr (Sch::affine) {
+      const P scale = m * P(step.cell_size);
+      for (int c = 0; c < Dim; ++c)
+        for (int k = 0; k < Dim; ++k) q[4 * (affine + k) + 1 + c] = scale * load(p.affine[std::size_t(c * Dim + k)].data() + s, count);
+    }
+    alignas(64) T sigma[Symmetric<T, Dim>::size][W];
+    material.stress(p, s, count, sigma);
+    const P e = load(p.compression.data() + s, count);
+    const T per_cell = Sch::mls ? T(1 / Bspline<Sch::S>::second_moment) / step.cell_size : T(1) / step.cell_size;
+    const P impulse = m * P(-step.dt * per_cell / material.reference_density()) / (P(T(1)) + e);  // −Δt V / Δx
+    for (int c = 0; c < Dim; ++c)
+      for (int k = 0; k < Dim; ++k) q[4 * (force + k) + 1 + c] += impulse * P::load(sigma[Symmetric<T, Dim>::index(c, k)]);
+    rows.fill(q);
+  }
+};
+
+/// Scatters particles [begin, end) of a body to `arena`, which it clears first. `origin`: node 0 of the arena.
+template <class Sch>
+void p2g_tile(const Particles<typename Sch::T, Sch::Dim>& p, std::size_t begin, std::size_t end, const MaterialKernel<typename Sch::T, Sch::Dim>& material,
+              const StepConstants<typename Sch::T>& step, const Index<Sch::Dim>& origin, typename Sch::T* arena) {
+  using T = typename Sch::T;
+  using Q = Coefficients<Sch>;
+  constexpr int W = batch<T>;
+  std::memset(arena, 0, sizeof(T) * Sch::arena_size);
+  StencilRows<Sch> rows[Sch::planes];
+  for (auto& r : rows) r.clear();
+  int current = -1;
+  const auto flush = [&] {
+    for (int plane = 0; plane < Sch::planes; ++plane) rows[plane].add_to(arena + plane * Sch::arena_plane + current * 4);
+  };
+  for (std::size_t s = begin; s < end; s += W) {
+    const int count = int(end - s < std::size_t(W) ? end - s : std::size_t(W));
+    const Stencils<Sch, Sch::p2g_moments, Sch::p2g_slopes> t(p, s, count, origin);
+    const Q q(p, s, count, material, step);
+    for (int l = 0; l < count; ++l) {
+      if (t.base[l] != current) {
+        if (current >= 0) flush();
+        for (auto& r : rows) r.clear();
+        current = t.base[l];
+      }
+      constexpr int moments = Sch::mls ? Q::force : (Sch::affine ? Q::affine : -1), slopes = Sch::mls ? -1 : Q::force;
+      if constexpr (Sch::flip) {
+        scatter<Sch, 0, -1, -1>(rows[0], t, l, q.rows.row(l));
+        scatter<Sch, -1, moments, slopes>(rows[1], t, l, q.rows.row(l));
+      } else {
+        scatter<Sch, 0, moments, slopes>(rows[0], t, l, q.rows.row(l));
+      }
+    }
+  }
+  if (current >= 0) flush();
+}
+
+}  // namespace jaxmpm

@@ -1,0 +1,36 @@
+#pragma once
+// What a transfer scheme needs, as compile-time facts, so that a kernel does nothing else.
+#include "basis/bspline.hpp"
+#include "deck/deck.hpp"
+#include "state/blocks.hpp"
+
+namespace jaxmpm {
+
+/// S: spline nodes; MLS: gradient form D⁻¹φ(x_i − x_p) instead of ∇φ.
+///
+/// Along one axis a particle has three kinds of factor for a node: the weight w, the moment d = w (X_i − X_p) and the slope g = dφ/dX. A tensor-product quantity along axis k
+/// takes d or g on axis k and w on the others. Affine velocities go with d, forces and gradients with g (spline) or d (mls).
+template <class T_, int Dim_, int S_, deck::Transfer kTransfer, bool kMls>
+struct Scheme {
+  using T = T_;
+  static constexpr int Dim = Dim_, S = S_;
+  static constexpr deck::Transfer transfer = kTransfer;
+  static constexpr bool mls = kMls;
+  static_assert(!(mls && S == 2), "linear splines have no moment matrix");
+  static constexpr bool flip = transfer == deck::Transfer::flip;
+  /// APIC's affine matrix is B D⁻¹; with linear splines D is singular at nodes and ∇φ takes its place, which is TPIC.
+  static constexpr bool affine_by_moments = transfer == deck::Transfer::apic && S > 2;
+  static constexpr bool affine = transfer == deck::Transfer::apic || transfer == deck::Transfer::tpic;
+  static constexpr bool p2g_moments = affine || mls, p2g_slopes = !mls;
+  static constexpr bool g2p_moments = affine_by_moments || mls;
+  static constexpr bool g2p_slopes = !mls || (affine && !affine_by_moments);
+  /// A node's record: one quad {mass, momentum or velocity}; FLIP has a second {–, impulse or change of velocity}.
+  static constexpr int planes = flip ? 2 : 1;
+  using Shape = BlockShape<Dim, S>;
+  static constexpr int arena_plane = (Shape::arena_nodes + 4) * 4;  // rows are read a full vector at a time: room behind the last
+  static constexpr int arena_size = arena_plane * planes;
+  static constexpr int own_plane = Shape::cells * 4;
+  static constexpr int own_size = own_plane * planes;
+};
+
+}  // namespace jaxmpm

@@ -1,0 +1,119 @@
+#pragma once
+// Stencils of W particles at once, laid out for the row loops: nodes of a row (along the last axis) are contiguous, four values each.
+#include <cmath>
+
+#include "core/pack.hpp"
+#include "kernels/scheme.hpp"
+#include "state/particles.hpp"
+
+namespace jaxmpm {
+
+/// Width of the particle loops.
+template <class T>
+inline constexpr int batch = native_lanes<T>;
+
+/// Lanes of one piece of a row, and pieces per row. A row has S nodes of four values.
+template <class T, int S>
+struct RowShape {
+  static constexpr int wanted = S == 2 ? 8 : 16;
+  static constexpr int N = native_lanes<T> < wanted ? native_lanes<T> : wanted;
+  static constexpr int pieces = (4 * S + N - 1) / N;
+};
+
+/// `count` values from p, the last one repeated to fill the pack; never reads past p[count − 1].
+template <class T>
+JAXMPM_INLINE Pack<T, batch<T>> load(const T* p, int count) {
+  constexpr int W = batch<T>;
+  if (count == W) return Pack<T, W>::load(p);
+  alignas(64) T lane[W];
+  for (int l = 0; l < W; ++l) lane[l] = p[l < count ? l : count - 1];
+  return Pack<T, W>::load(lane);
+}
+template <class T>
+JAXMPM_INLINE void store(T* p, Pack<T, batch<T>> value, int count) {
+  constexpr int W = batch<T>;
+  if (count == W) return value.store(p);
+  alignas(64) T lane[W];
+  value.store(lane);
+  for (int l = 0; l < count; ++l) p[l] = lane[l];
+}
+
+/// Values of W particles, one row of `stride` values a particle: a transposed copy of `Count` packs.
+template <class T, int Count>
+struct ParticleRows {
+  static constexpr int W = batch<T>;
+  static constexpr int stride = (Count + W - 1) / W * W;
+  alignas(64) T value[W * stride];
+  const T* row(int lane) const { return value + lane * stride; }
+  T* row(int lane) { return value + lane * stride; }
+  /// Fills the rows from packs (of which there are `stride`; the ones past Count are padding).
+  JAXMPM_INLINE void fill(Pack<T, W>* packs) {
+    for (int first = 0; first < stride; first += W) {
+      transpose(packs + first);
+      for (int l = 0; l < W; ++l) packs[first + l].store(value + l * stride + first);
+    }
+  }
+  /// The other way round.
+  JAXMPM_INLINE void read(Pack<T, W>* packs) const {
+    for (int first = 0; first < stride; first += W) {
+      for (int l = 0; l < W; ++l) packs[first + l] = Pack<T, W>::load(value + l * stride + first);
+      transpose(packs + first);
+    }
+  }
+};
+
+/// Base nodes of W particles in their block's arena and the factors of each axis.
+template <class Sch, bool Moments, bool Slopes>
+struct Stencils {
+  using T = typename Sch::T;
+  static constexpr int Dim = Sch::Dim, S = Sch::S, W = batch<T>;
+  using P = Pack<T, W>;
+  /// Quads of a row along the last axis: w, then d, then g.
+  static constexpr int w_quad = 0, d_quad = 1, g_quad = Moments ? 2 : 1;
+  static constexpr int quads = 1 + int(Moments) + int(Slopes);
+
+  alignas(64) int base[W];
+  alignas(64) T w[Dim - 1][S][W], d[Dim - 1][S][W], g[Dim - 1][S][W];  // axes but the last, to be broadcast
+  ParticleRows<T, 4 * quads> last;                                         // the last axis, to be spread
+
+  JAXMPM_INLINE Stencils(const Particles<T, Dim>& p, std::size_t s, int count, const Index<Dim>& origin) {
+    constexpr int A = Sch::Shape::A;
+    for (int l = 0; l < W; ++l) base[l] = 0;
+    for (int axis = 0; axis < Dim; ++axis) {
+      alignas(64) T offset[W];
+      alignas(64) double X[W];
+      const double* x = p.position[std::size_t(axis)].data() + s;
+      if (count == W) std::memcpy(X, x, sizeof X);
+      else
+        for (int l = 0; l < W; ++l) X[l] = x[l < count ? l : count - 1];
+      const int o = origin[std::size_t(axis)];
+      for (int l = 0; l < W; ++l) {
+        const double b = std::floor(X[l] - Bspline<S>::base_shift);
+        base[l] = base[l] * A + (int(b) - o);
+        offset[l] = T(X[l] - b);
+      }
+      const P f = P::load(offset);
+      P weight[S], slope[S];
+      Bspline<S>::weights(f, weight);
+      if constexpr (Slopes) Bspline<S>::slopes(f, slope);
+      if (axis < Dim - 1) {
+        for (int a = 0; a < S; ++a) {
+          weight[a].store(w[axis][a]);
+          if constexpr (Moments) (weight[a] * (P(T(a)) - f)).store(d[axis][a]);
+          if constexpr (Slopes) slope[a].store(g[axis][a]);
+        }
+      } else {
+        P row[decltype(last)::stride];
+        for (P& r : row) r = P(T(0));
+        for (int a = 0; a < S; ++a) {
+          row[4 * w_quad + a] = weight[a];
+          if constexpr (Moments) row[4 * d_quad + a] = weight[a] * (P(T(a)) - f);
+          if constexpr (Slopes) row[4 * g_quad + a] = slope[a];
+        }
+        last.fill(row);
+      }
+    }
+  }
+};
+
+}  // namespace jaxmpm

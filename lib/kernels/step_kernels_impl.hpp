@@ -1,0 +1,54 @@
+#pragma once
+#include "kernels/g2p.hpp"
+#include "kernels/step_kernels.hpp"
+
+namespace jaxmpm {
+
+template <class Sch>
+TileReport gather_tile(Particles<typename Sch::T, Sch::Dim>& p, const Tile& tile, const Blocks<Sch::Dim>& blocks, const typename Sch::T* grid,
+                       const MaterialKernel<typename Sch::T, Sch::Dim>& material, const StepConstants<typename Sch::T>& step, bool account,
+                       const Index<Sch::Dim>& origin, const DomainBounds<Sch::Dim>& domain) {
+  alignas(64) typename Sch::T arena[Sch::arena_size];
+  load_arena<Sch>(blocks, tile.block, grid, arena);
+  return g2p_tile<Sch>(p, tile.begin, tile.end, material, step, account, origin, domain, arena);
+}
+
+template <class Sch>
+StepKernels<typename Sch::T, Sch::Dim> kernels_of() {
+  using T = typename Sch::T;
+  constexpr int Dim = Sch::Dim, S = Sch::S;
+  StepKernels<T, Dim> k;
+  k.spline_nodes = S, k.planes = Sch::planes;
+  k.arena_size = Sch::arena_size, k.own_size = Sch::own_size;
+  k.block_extent = &block_extent<Dim, S>;
+  k.sort = &sort_particles<S, T, Dim>;
+  k.build_blocks = &build_blocks<S, Dim>;
+  k.p2g = &p2g_tile<Sch>;
+  k.sum = &sum_arenas<Sch>;
+  k.update_nodes = &update_nodes<Sch>;
+  k.g2p = &gather_tile<Sch>;
+  return k;
+}
+
+template <class T, int Dim, int S, bool mls>
+StepKernels<T, Dim> kernels_of(deck::Transfer transfer) {
+  using deck::Transfer;
+  switch (transfer) {
+    case Transfer::pic: return kernels_of<Scheme<T, Dim, S, Transfer::pic, mls>>();
+    case Transfer::flip: return kernels_of<Scheme<T, Dim, S, Transfer::flip, mls>>();
+    case Transfer::apic:  // with linear splines APIC is TPIC
+      if constexpr (S > 2) return kernels_of<Scheme<T, Dim, S, Transfer::apic, mls>>();
+      [[fallthrough]];
+    case Transfer::tpic: break;
+  }
+  return kernels_of<Scheme<T, Dim, S, Transfer::tpic, mls>>();
+}
+
+template <class T, int Dim, int S>
+StepKernels<T, Dim> step_kernels(deck::Transfer transfer, deck::GradientForm gradient) {
+  if constexpr (S > 2)
+    if (gradient == deck::GradientForm::mls) return kernels_of<T, Dim, S, true>(transfer);
+  return kernels_of<T, Dim, S, false>(transfer);
+}
+
+}  // namespace jaxmpm

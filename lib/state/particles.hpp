@@ -1,0 +1,68 @@
+#pragma once
+// The particles of one body: one array per field component, in storage order (sorted by block, cell and id).
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace jaxmpm {
+
+/// Allocator of cache-line aligned arrays that are not touched on allocation.
+template <class T>
+struct AlignedAllocator {
+  using value_type = T;
+  AlignedAllocator() = default;
+  template <class U>
+  AlignedAllocator(const AlignedAllocator<U>&) {}
+  T* allocate(std::size_t n) { return static_cast<T*>(::operator new(n * sizeof(T), std::align_val_t(64))); }
+  void deallocate(T* p, std::size_t) { ::operator delete(p, std::align_val_t(64)); }
+  template <class U>
+  void construct(U*) noexcept {}  // left uninitialised: every array is written before it is read
+  template <class U, class... A>
+  void construct(U* p, A&&... a) { ::new (static_cast<void*>(p)) U(std::forward<A>(a)...); }
+  friend bool operator==(AlignedAllocator, AlignedAllocator) { return true; }
+  friend bool operator!=(AlignedAllocator, AlignedAllocator) { return false; }
+};
+template <class T>
+using Array = std::vector<T, AlignedAllocator<T>>;
+
+/// Fields of one body. Sizes of the second level: position and velocity Dim, affine Dim·Dim or none, gradient Dim·Dim or none, history as the material asks.
+template <class T, int Dim>
+struct Particles {
+  std::vector<Array<double>> position;  // cells from domain.min
+  std::vector<Array<T>> velocity;       // m/s
+  Array<T> mass;                        // kg
+  Array<T> compression;                 // ρ/ρ0 − 1
+  std::vector<Array<T>> affine;         // 1/s, row-major: the affine matrix of APIC or the velocity gradient of TPIC
+  std::vector<Array<T>> history;        // of the material: stress first where it is carried
+  std::vector<Array<T>> gradient;       // 1/s, row-major: the material's velocity gradient, only where some output asks for it
+  Array<std::uint32_t> id;
+
+  std::size_t count() const { return id.size(); }
+
+  /// The field table: calls f(name, array) for every array, in a fixed order. Sort, checkpoint and memory estimate all go through it.
+  template <class F>
+  void for_each_field(F&& f) { visit(*this, f); }
+  template <class F>
+  void for_each_field(F&& f) const { visit(*this, f); }
+
+  std::size_t bytes_per_particle() const {
+    std::size_t sum = 0;
+    for_each_field([&](const std::string&, const auto& array) { sum += sizeof(array[0]); });
+    return sum;
+  }
+
+ private:
+  template <class Self, class F>
+  static void visit(Self& self, F& f) {
+    const auto components = [&](const std::string& name, auto& arrays) {
+      for (std::size_t k = 0; k < arrays.size(); ++k) f(name + "_" + std::to_string(k), arrays[k]);
+    };
+    components("position", self.position), components("velocity", self.velocity);
+    f(std::string("mass"), self.mass), f(std::string("compression"), self.compression);
+    components("affine", self.affine), components("history", self.history), components("gradient", self.gradient);
+    f(std::string("id"), self.id);
+  }
+};
+
+}  // namespace jaxmpm

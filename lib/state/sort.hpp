@@ -1,0 +1,143 @@
+#pragma once
+// Sorting: particles by block, cell and id (a total order, so that the bits do not depend on history), and the blocks that follow from it.
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "basis/bspline.hpp"
+#include "core/parallel.hpp"
+#include "state/blocks.hpp"
+#include "state/particles.hpp"
+
+namespace jaxmpm {
+
+/// Keys and scratch that live from sort to sort, so that sorting allocates nothing in the long run.
+template <class T>
+struct SortScratch {
+  std::vector<std::int64_t> block_key;
+  std::vector<std::uint16_t> cell;
+  std::vector<std::uint32_t> order, next;
+  std::vector<std::int64_t> filled;  // distinct block keys of a body, ascending
+  Array<double> f8;
+  Array<T> real;
+  Array<std::uint32_t> u4;
+};
+
+/// Block coordinates along each axis of a domain of `cells` cells, margins included.
+template <int Dim, int S>
+Index<Dim> block_extent(const std::array<int, 3>& cells) {
+  Index<Dim> n{};
+  for (int d = 0; d < Dim; ++d) n[std::size_t(d)] = (cells[std::size_t(d)] + S) / BlockShape<Dim, S>::B + 2 * BlockShape<Dim, S>::margin + 1;
+  return n;
+}
+
+namespace sort_detail {
+
+/// Distinct values of a nearly sorted sequence, ascending.
+inline void distinct(const std::vector<std::int64_t>& keys, std::vector<std::int64_t>& out) {
+  out.clear();
+  for (std::size_t a = 0; a < keys.size(); ++a)
+    if (a == 0 || keys[a] != keys[a - 1]) out.push_back(keys[a]);
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
+}
+
+template <class From>
+void permute(Array<From>& field, Array<From>& scratch, const std::vector<std::uint32_t>& order) {
+  scratch.resize(field.size());
+  parallel_for_host_static("jaxmpm::sort::permute", field.size(), [&](std::size_t a) { scratch[a] = field[order[a]]; });
+  field.swap(scratch);
+}
+
+}  // namespace sort_detail
+
+/// Sorts the particles of one body and appends its tiles (with block keys in `tile_key`).
+template <int S, class T, int Dim>
+void sort_particles(Particles<T, Dim>& particles, std::uint32_t body, const Index<Dim>& extent, SortScratch<T>& scratch, std::vector<Tile>& tiles,
+                    std::vector<std::int64_t>& tile_key) {
+  using Shape = BlockShape<Dim, S>;
+  constexpr int B = Shape::B;
+  const std::size_t n = particles.count();
+  scratch.block_key.resize(n), scratch.cell.resize(n), scratch.order.resize(n);
+  parallel_for_host_static("jaxmpm::sort::keys", n, [&](std::size_t a) {
+    std::int64_t key = 0;
+    int cell = 0;
+    for (int d = 0; d < Dim; ++d) {
+      const int base = int(std::floor(particles.position[std::size_t(d)][a] - Bspline<S>::base_shift)) + Shape::margin * B;  // ≥ B
+      key = key * extent[std::size_t(d)] + base / B, cell = cell * B + base % B;
+    }
+    scratch.block_key[a] = key, scratch.cell[a] = std::uint16_t(cell);
+  });
+  sort_detail::distinct(scratch.block_key, scratch.filled);
+  const std::vector<std::int64_t>& filled = scratch.filled;
+  std::vector<std::uint32_t>& next = scratch.next;  // counting sort over (rank of block, cell)
+  next.assign(filled.size() * Shape::cells + 1, 0);
+  std::size_t rank = 0;
+  const auto slot = [&](std::size_t a) {
+    if (filled[rank] != scratch.block_key[a]) rank = std::size_t(std::lower_bound(filled.begin(), filled.end(), scratch.block_key[a]) - filled.begin());
+    return rank * Shape::cells + scratch.cell[a];
+  };
+  for (std::size_t a = 0; a < n; ++a) ++next[slot(a) + 1];
+  std::partial_sum(next.begin(), next.end(), next.begin());
+  for (std::size_t r = 0; r < filled.size(); ++r) {
+    tiles.push_back({body, 0, next[r * Shape::cells], next[(r + 1) * Shape::cells]});
+    tile_key.push_back(filled[r]);
+  }
+  for (std::size_t a = 0; a < n; ++a) scratch.order[next[slot(a)]++] = std::uint32_t(a);
+  // Now next[c] is where cell c ends.
+  parallel_for_host_static("jaxmpm::sort::ids", filled.size() * Shape::cells, [&](std::size_t c) {
+    const auto by_id = [&](std::uint32_t a, std::uint32_t b) { return particles.id[a] < particles.id[b]; };
+    std::sort(scratch.order.begin() + (c == 0 ? 0 : next[c - 1]), scratch.order.begin() + next[c], by_id);
+  });
+  particles.for_each_field([&](const std::string&, auto& field) {
+    using Value = std::decay_t<decltype(field[0])>;
+    if constexpr (std::is_same_v<Value, T>) sort_detail::permute(field, scratch.real, scratch.order);
+    else if constexpr (std::is_same_v<Value, double>) sort_detail::permute(field, scratch.f8, scratch.order);
+    else sort_detail::permute(field, scratch.u4, scratch.order);
+  });
+}
+
+/// Active blocks, neighbours and contributions of the tiles that sort_particles made.
+template <int S, int Dim>
+void build_blocks(Blocks<Dim>& blocks, const std::vector<std::int64_t>& tile_key, const Index<Dim>& extent) {
+  constexpr int around = BlockShape<Dim, S>::neighbours;
+  std::array<std::int64_t, Dim> stride{};
+  stride[Dim - 1] = 1;
+  for (int d = Dim - 2; d >= 0; --d) stride[std::size_t(d)] = stride[std::size_t(d) + 1] * extent[std::size_t(d) + 1];
+  std::array<std::int64_t, around> offset{};  // of neighbour m = (a·3 + b)·3 + c
+  for (int m = 0; m < around; ++m)
+    for (int d = Dim - 1, rest = m; d >= 0; --d, rest /= 3) offset[std::size_t(m)] += (rest % 3 - 1) * stride[std::size_t(d)];
+
+  std::vector<std::int64_t> keys;
+  keys.reserve(tile_key.size() * 2);
+  for (const std::int64_t off : offset)
+    for (const std::int64_t key : tile_key) keys.push_back(key + off);
+  std::sort(keys.begin(), keys.end());
+  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+
+  const std::size_t n = keys.size();
+  blocks.index.resize(n), blocks.neighbour.assign(n * around, Blocks<Dim>::none);
+  const auto find = [&](std::int64_t key) {
+    const auto at = std::lower_bound(keys.begin(), keys.end(), key);
+    return at != keys.end() && *at == key ? int(at - keys.begin()) : Blocks<Dim>::none;
+  };
+  std::vector<std::vector<std::uint32_t>> tiles_of(n);
+  for (std::size_t t = 0; t < tile_key.size(); ++t) {
+    blocks.tiles[t].block = std::uint32_t(find(tile_key[t]));
+    tiles_of[blocks.tiles[t].block].push_back(std::uint32_t(t));
+  }
+  blocks.first_contribution.assign(1, 0), blocks.contributions.clear();
+  for (std::size_t b = 0; b < n; ++b) {
+    std::int64_t rest = keys[b];
+    for (int d = 0; d < Dim; ++d) blocks.index[b][std::size_t(d)] = int(rest / stride[std::size_t(d)]), rest %= stride[std::size_t(d)];
+    for (int m = 0; m < around; ++m) {
+      const int other = find(keys[b] + offset[std::size_t(m)]);
+      blocks.neighbour[b * around + std::size_t(m)] = other;
+      if (other < 0) continue;
+      for (const std::uint32_t t : tiles_of[std::size_t(other)]) blocks.contributions.push_back({t, std::uint32_t(m)});
+    }
+    blocks.first_contribution.push_back(std::uint32_t(blocks.contributions.size()));
+  }
+}
+
+}  // namespace jaxmpm
