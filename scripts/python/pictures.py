@@ -75,10 +75,10 @@ def draw_scene(axes, deck, deck_directory, horizontal=0, vertical=1):
             wall = deck.get("walls", {}).get(f"{AXES[axis]}_{end}", {})
             style = WALL_STYLES[wall.get("kind", "slip")]
             line = ([at, at], [low[other], high[other]])
-            axes.plot(*(line if axis == horizontal else line[::-1]), **style, zorder=3, clip_on=False)
+            axes.plot(*(line if axis == horizontal else line[::-1]), **style, zorder=3)
     for obstacle in deck.get("obstacles", []):
         for points in outlines_in(obstacle["shape"], deck_directory, horizontal, vertical):
-            axes.add_patch(patches.Polygon(points, closed=True, fc="0.8", ec="k", lw=0.8, zorder=2))
+            axes.add_patch(patches.Polygon(points, closed=True, fc=(0.75, 0.75, 0.75, 1.0 if len(low) == 2 else 0.4), ec="k", lw=0.8, zorder=2))
 
 
 def outlines_in(shape, directory, horizontal, vertical):

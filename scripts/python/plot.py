@@ -53,9 +53,9 @@ def panel_grid(results, count, boxes):
     """Figure and axes: one row for each time, one column for each view, sized to the shape of what is shown."""
     ratios = [(b[1][1] - b[1][0]) / (b[0][1] - b[0][0]) for b in boxes]
     width = 9.0 / len(boxes)
-    height = max(ratios) * width + 0.75
+    height = max(ratios) * width * 0.88 + 0.7
     while count * height > 16 and width > 2.5:
-        width, height = width * 0.9, max(ratios) * width * 0.9 + 0.75
+        width, height = width * 0.9, max(ratios) * width * 0.8 + 0.7
     figure, axes = plt.subplots(count, len(boxes), figsize=(width * len(boxes) + 1.6, count * height + 0.4), squeeze=False, layout="constrained")
     return figure, axes
 
