@@ -55,8 +55,8 @@ struct NodeContact {
   T friction_work = 0;
 };
 
-/// Velocity of any node in the mirrored domain. `Raw` is a callable Index → NodeSums (zero mass where there is nothing); `Obstacles` a callable
-/// (Index, mass, velocity&) that applies the rigid obstacles at an inner node.
+/// Velocity of any node in the mirrored domain. `Raw` is a callable Index → NodeSums (zero mass where there is nothing); `Obstacles` a
+/// callable (Index, mass, velocity&) that applies the rigid obstacles at an inner node.
 template <class T, int Dim, class Raw, class Obstacles>
 class WallUpdate {
   using Node = std::array<int, Dim>;
@@ -148,7 +148,8 @@ class WallUpdate {
   }
 
  private:
-  void apply_faces(const Node& node, const std::array<int, Dim>& on_face, const std::array<int, Dim>& twin_face, T mass, V& v, NodeContact<T, Dim>* contact) const {
+  void apply_faces(const Node& node, const std::array<int, Dim>& on_face, const std::array<int, Dim>& twin_face, T mass, V& v,
+                   NodeContact<T, Dim>* contact) const {
     const V free = v;
     for (int axis = 0; axis < Dim; ++axis)  // normals first
       if (on_face[std::size_t(axis)] >= 0) v[axis] = T(0);
@@ -180,7 +181,8 @@ class WallUpdate {
       if (c != axis) v[c] *= scale;
     if (contact) contact->friction_work += T(0.5) * mass * square * (T(1) - scale * scale);
   }
-  void report(int face, int axis, deck::ContactKind kind, T normal, T mass, const V& free, const V& v, const NodeSums<T, Dim>& beyond, NodeContact<T, Dim>& contact) const {
+  void report(int face, int axis, deck::ContactKind kind, T normal, T mass, const V& free, const V& v, const NodeSums<T, Dim>& beyond,
+              NodeContact<T, Dim>& contact) const {
     auto& impulse = contact.impulse[std::size_t(face)];
     for (int c = 0; c < Dim; ++c) {
       if (c == axis) impulse[std::size_t(c)] += inward(face) * normal;

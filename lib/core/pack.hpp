@@ -25,9 +25,9 @@ namespace pack_detail {
 // Written out, as compilers lose the attribute where its size depends on a template parameter.
 template <class T, int N>
 struct Register;
-#define JAXMPM_REGISTER(T, N)                            \
-  template <>                                            \
-  struct Register<T, N> {                                \
+#define JAXMPM_REGISTER(T, N)                                   \
+  template <>                                                   \
+  struct Register<T, N> {                                       \
     typedef T type __attribute__((vector_size(N * sizeof(T)))); \
   };
 #define JAXMPM_REGISTERS(T) JAXMPM_REGISTER(T, 2) JAXMPM_REGISTER(T, 4) JAXMPM_REGISTER(T, 8) JAXMPM_REGISTER(T, 16)
@@ -129,13 +129,19 @@ JAXMPM_INLINE T largest(Pack<T, N> a) {
 
 /// a·b + c; the compiler contracts it to one instruction where the machine has it.
 template <class Real>
-JAXMPM_INLINE Real fma(Real a, Real b, Real c) { return a * b + c; }
+JAXMPM_INLINE Real fma(Real a, Real b, Real c) {
+  return a * b + c;
+}
 
 /// Calls f(integral_constant 0) … f(integral_constant N−1): a loop whose index is known at compile time.
 template <class F, int... I>
-JAXMPM_INLINE void static_for(std::integer_sequence<int, I...>, F&& f) { (f(std::integral_constant<int, I>{}), ...); }
+JAXMPM_INLINE void static_for(std::integer_sequence<int, I...>, F&& f) {
+  (f(std::integral_constant<int, I>{}), ...);
+}
 template <int N, class F>
-JAXMPM_INLINE void static_for(F&& f) { static_for(std::make_integer_sequence<int, N>{}, f); }
+JAXMPM_INLINE void static_for(F&& f) {
+  static_for(std::make_integer_sequence<int, N>{}, f);
+}
 
 namespace pack_detail {
 /// {a[h], b[h], a[h+1], b[h+1], …} with h = 0 (Half 0) or N/2 (Half 1).

@@ -39,7 +39,9 @@ JAXMPM_INLINE Real trace(const Matrix<Real, Dim>& m) {
 }
 
 template <class Real, int Dim>
-JAXMPM_INLINE Real trace(const Symmetric<Real, Dim>& s) { return s[0] + s[1] + s[2]; }
+JAXMPM_INLINE Real trace(const Symmetric<Real, Dim>& s) {
+  return s[0] + s[1] + s[2];
+}
 
 /// Symmetric part of a matrix; its zz is zero in plane strain.
 template <class Real, int Dim>

@@ -1,5 +1,6 @@
 #pragma once
-// Grid to particles (Eqs 15–18, B.1, B.2) and the stress that follows from it: one tile gathers from its arena, moves its particles and advances its material.
+// Grid to particles (Eqs 15–18, B.1, B.2) and the stress that follows from it: one tile gathers from its arena, moves its particles and
+// advances its material.
 #include "kernels/p2g.hpp"
 
 namespace jaxmpm {
@@ -10,7 +11,8 @@ JAXMPM_INLINE Pack<T, N> sum_quads(const Pack<T, N>* x) {
   if constexpr (N == 4) {
     return x[0];
   } else if constexpr (N == 8) {
-    return Pack<T, N>(__builtin_shufflevector(x[0].v, x[1].v, 0, 1, 2, 3, 8, 9, 10, 11)) + Pack<T, N>(__builtin_shufflevector(x[0].v, x[1].v, 4, 5, 6, 7, 12, 13, 14, 15));
+    return Pack<T, N>(__builtin_shufflevector(x[0].v, x[1].v, 0, 1, 2, 3, 8, 9, 10, 11)) +
+           Pack<T, N>(__builtin_shufflevector(x[0].v, x[1].v, 4, 5, 6, 7, 12, 13, 14, 15));
   } else {
     static_assert(N == 16);
     const auto half = [](const Pack<T, N>& a, const Pack<T, N>& b) {  // {a0+a2, a1+a3, b0+b2, b1+b3} of quads
@@ -33,9 +35,11 @@ struct GatheredQuads {
   static constexpr int padded = (count + per_store - 1) / per_store * per_store;
 };
 
-/// Σ over the stencil of factor × node, for one particle: quads of sums, one pack per (quad, lane of the row); still to be added along the row.
+/// Σ over the stencil of factor × node, for one particle: quads of sums, one pack per (quad, lane of the row); still to be added along the
+/// row.
 template <class Sch, bool only_value, class Stencil>
-JAXMPM_INLINE void gather(const StencilRows<Sch>& rows, const Stencil& t, int l, Pack<typename Sch::T, RowShape<typename Sch::T, Sch::S>::N>* sums) {
+JAXMPM_INLINE void gather(const StencilRows<Sch>& rows, const Stencil& t, int l,
+                          Pack<typename Sch::T, RowShape<typename Sch::T, Sch::S>::N>* sums) {
   using T = typename Sch::T;
   using Row = RowShape<T, Sch::S>;
   using G = GatheredQuads<Sch>;
@@ -86,13 +90,16 @@ JAXMPM_INLINE void gather(const StencilRows<Sch>& rows, const Stencil& t, int l,
 
 /// What the gather knows of the domain: cells along each axis, to catch particles that leave it.
 template <int Dim>
-struct DomainBounds { Index<Dim> cells; };
+struct DomainBounds {
+  Index<Dim> cells;
+};
 
 /// Moves W particles and advances their material.
 template <class Sch>
-JAXMPM_INLINE void update_particles(Particles<typename Sch::T, Sch::Dim>& p, std::size_t s, int count, const Pack<typename Sch::T, batch<typename Sch::T>>* gathered,
-                                    const MaterialKernel<typename Sch::T, Sch::Dim>& material, const StepConstants<typename Sch::T>& step, bool account,
-                                    const DomainBounds<Sch::Dim>& domain, TileReport& report) {
+JAXMPM_INLINE void update_particles(Particles<typename Sch::T, Sch::Dim>& p, std::size_t s, int count,
+                                    const Pack<typename Sch::T, batch<typename Sch::T>>* gathered,
+                                    const MaterialKernel<typename Sch::T, Sch::Dim>& material, const StepConstants<typename Sch::T>& step,
+                                    bool account, const DomainBounds<Sch::Dim>& domain, TileReport& report) {
   using T = typename Sch::T;
   using G = GatheredQuads<Sch>;
   constexpr int W = batch<T>, Dim = Sch::Dim;
@@ -145,9 +152,9 @@ JAXMPM_INLINE void update_particles(Particles<typename Sch::T, Sch::Dim>& p, std
 
 /// Gathers to particles [begin, end) of a body from `arena` and advances their material. `origin`: node 0 of the arena.
 template <class Sch>
-TileReport g2p_tile(Particles<typename Sch::T, Sch::Dim>& p, std::size_t begin, std::size_t end, const MaterialKernel<typename Sch::T, Sch::Dim>& material,
-                    const StepConstants<typename Sch::T>& step, bool account, const Index<Sch::Dim>& origin, const DomainBounds<Sch::Dim>& domain,
-                    const typename Sch::T* arena) {
+TileReport g2p_tile(Particles<typename Sch::T, Sch::Dim>& p, std::size_t begin, std::size_t end,
+                    const MaterialKernel<typename Sch::T, Sch::Dim>& material, const StepConstants<typename Sch::T>& step, bool account,
+                    const Index<Sch::Dim>& origin, const DomainBounds<Sch::Dim>& domain, const typename Sch::T* arena) {
   using T = typename Sch::T;
   using G = GatheredQuads<Sch>;
   using R = typename StencilRows<Sch>::R;

@@ -1,5 +1,6 @@
 #pragma once
-// The grid between the transfers (Eqs 13–14): sums of the arenas, division, gravity, walls and obstacles; and the copy of the result to a tile's arena.
+// The grid between the transfers (Eqs 13–14): sums of the arenas, division, gravity, walls and obstacles; and the copy of the result to a
+// tile's arena.
 #include <cstring>
 
 #include "contact/obstacles.hpp"
@@ -12,7 +13,8 @@ namespace jaxmpm {
 template <int Dim>
 struct NeighbourOffset {
   int a, b, c;
-  explicit NeighbourOffset(int m) : a(Dim == 2 ? m / 3 - 1 : m / 9 - 1), b(Dim == 2 ? m % 3 - 1 : m / 3 % 3 - 1), c(Dim == 2 ? 0 : m % 3 - 1) {}
+  explicit NeighbourOffset(int m)
+      : a(Dim == 2 ? m / 3 - 1 : m / 9 - 1), b(Dim == 2 ? m % 3 - 1 : m / 3 % 3 - 1), c(Dim == 2 ? 0 : m % 3 - 1) {}
 };
 
 /// Rows (runs along the last axis) that the arena of a neighbour shares with a block: f(own node, arena node, count).
@@ -55,7 +57,8 @@ void load_arena(const Blocks<Sch::Dim>& blocks, std::size_t block, const typenam
     const NeighbourOffset<Sch::Dim> n(m);
     for (int plane = 0; plane < Sch::planes; ++plane)
       for_each_shared_row<typename Sch::Shape, Sch::Dim, Sch::S>(-n.a, -n.b, -n.c, [&](int own_node, int arena_node, int count) {
-        std::memcpy(arena + plane * Sch::arena_plane + 4 * arena_node, from + plane * Sch::own_plane + 4 * own_node, sizeof(T) * 4 * std::size_t(count));
+        std::memcpy(arena + plane * Sch::arena_plane + 4 * arena_node, from + plane * Sch::own_plane + 4 * own_node,
+                    sizeof(T) * 4 * std::size_t(count));
       });
   }
 }

@@ -1,5 +1,6 @@
 #pragma once
-// A material as the transfer kernels see it: stress and update of a batch of particles. One virtual call per batch keeps materials and schemes from multiplying.
+// A material as the transfer kernels see it: stress and update of a batch of particles. One virtual call per batch keeps materials and
+// schemes from multiplying.
 #include <memory>
 
 #include "core/pack.hpp"
@@ -11,10 +12,10 @@ namespace jaxmpm {
 
 /// What a tile reports of a step, gathered batch by batch in storage order.
 struct TileReport {
-  double fastest = 0;       // largest c + |v|, m/s
-  double displacement = 0;  // largest |Δx| along an axis, cells
+  double fastest = 0;               // largest c + |v|, m/s
+  double displacement = 0;          // largest |Δx| along an axis, cells
   double plastic = 0, viscous = 0;  // energy dissipated, J (only where accounted)
-  bool sound = true;        // every value finite and every particle inside the domain
+  bool sound = true;                // every value finite and every particle inside the domain
 };
 
 template <class T, int Dim>
@@ -30,9 +31,10 @@ class MaterialKernel {
 
   /// Cauchy stress of `count` particles from s: sigma[component][lane], Pa.
   virtual void stress(const Particles<T, Dim>& p, std::size_t s, int count, T sigma[][native_lanes<T>]) const = 0;
-  /// Advances compression and history of `count` particles from s by H = Δt∇v (H[component][lane]), in place; speed[lane]: |v|, for c + |v|.
-  virtual void update(Particles<T, Dim>& p, std::size_t s, int count, const T H[][native_lanes<T>], const T speed[native_lanes<T>], T dt, bool account,
-                      TileReport& report) const = 0;
+  /// Advances compression and history of `count` particles from s by H = Δt∇v (H[component][lane]), in place; speed[lane]: |v|, for c +
+  /// |v|.
+  virtual void update(Particles<T, Dim>& p, std::size_t s, int count, const T H[][native_lanes<T>], const T speed[native_lanes<T>], T dt,
+                      bool account, TileReport& report) const = 0;
 
   // One particle at a time, double precision: set-up and output.
   virtual void start(const double stress[6], double compression, double* history) const = 0;

@@ -36,7 +36,8 @@ class LawKernel final : public MaterialKernel<T, Dim> {
     for (int k = 0; k < value.size; ++k) value[k].store(sigma[k]);
   }
 
-  void update(Particles<T, Dim>& p, std::size_t s, int count, const T H[][W], const T speed[W], T dt, bool account, TileReport& report) const override {
+  void update(Particles<T, Dim>& p, std::size_t s, int count, const T H[][W], const T speed[W], T dt, bool account,
+              TileReport& report) const override {
     P h[slots];
     read_history(p, s, count, h);
     P e = load(p.compression.data() + s, count);

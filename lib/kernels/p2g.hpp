@@ -21,7 +21,9 @@ struct StencilRows {
   static constexpr int S = Sch::S, count = Sch::Dim == 3 ? S * S : S;
   R row[count][Row::pieces];
 
-  static constexpr int place(int r) { return (Sch::Dim == 3 ? Sch::Shape::arena_node(r / S, r % S, 0) : Sch::Shape::arena_node(r, 0, 0)) * 4; }
+  static constexpr int place(int r) {
+    return (Sch::Dim == 3 ? Sch::Shape::arena_node(r / S, r % S, 0) : Sch::Shape::arena_node(r, 0, 0)) * 4;
+  }
   JAXMPM_INLINE void clear() {
     for (auto& r : row)
       for (R& piece : r) piece = R(T(0));
@@ -39,8 +41,11 @@ struct StencilRows {
   }
 };
 
-/// Which quads of a particle's coefficient row a plane takes: `rest` goes with w alone, moments + k with d on axis k, slopes + k with g on axis k; −1: not at all.
-struct PlaneQuads { int rest, moments, slopes; };
+/// Which quads of a particle's coefficient row a plane takes: `rest` goes with w alone, moments + k with d on axis k, slopes + k with g on
+/// axis k; −1: not at all.
+struct PlaneQuads {
+  int rest, moments, slopes;
+};
 
 /// rows += Σ over kinds of factor × quad, for one particle (lane l of the stencils).
 template <class Sch, int rest, int moments, int slopes, class Stencil>
@@ -82,7 +87,8 @@ JAXMPM_INLINE void scatter(StencilRows<Sch>& rows, const Stencil& t, int l, cons
   });
 }
 
-/// Coefficient quads of W particles: {m, m v} at rest, per axis m C Δx for the affine velocity, and −Δt V σ times 1/Δx (slopes) or Δx D⁻¹ (moments) for the force.
+/// Coefficient quads of W particles: {m, m v} at rest, per axis m C Δx for the affine velocity, and −Δt V σ times 1/Δx (slopes) or Δx D⁻¹
+/// (moments) for the force.
 template <class Sch>
 struct Coefficients {
   using T = typename Sch::T;
@@ -94,7 +100,8 @@ struct Coefficients {
   static constexpr int quads = force + Dim;
   ParticleRows<T, 4 * quads> rows;
 
-  JAXMPM_INLINE Coefficients(const Particles<T, Dim>& p, std::size_t s, int count, const MaterialKernel<T, Dim>& material, const StepConstants<T>& step) {
+  JAXMPM_INLINE Coefficients(const Particles<T, Dim>& p, std::size_t s, int count, const MaterialKernel<T, Dim>& material,
+                             const StepConstants<T>& step) {
     P q[decltype(rows)::stride];
     for (P& x : q) x = P(T(0));
     const P m = load(p.mass.data() + s, count);
@@ -118,8 +125,9 @@ struct Coefficients {
 
 /// Scatters particles [begin, end) of a body to `arena`, which it clears first. `origin`: node 0 of the arena.
 template <class Sch>
-void p2g_tile(const Particles<typename Sch::T, Sch::Dim>& p, std::size_t begin, std::size_t end, const MaterialKernel<typename Sch::T, Sch::Dim>& material,
-              const StepConstants<typename Sch::T>& step, const Index<Sch::Dim>& origin, typename Sch::T* arena) {
+void p2g_tile(const Particles<typename Sch::T, Sch::Dim>& p, std::size_t begin, std::size_t end,
+              const MaterialKernel<typename Sch::T, Sch::Dim>& material, const StepConstants<typename Sch::T>& step,
+              const Index<Sch::Dim>& origin, typename Sch::T* arena) {
   using T = typename Sch::T;
   using Q = Coefficients<Sch>;
   constexpr int W = batch<T>;

@@ -8,8 +8,9 @@ namespace jaxmpm {
 
 /// S: spline nodes; MLS: gradient form D⁻¹φ(x_i − x_p) instead of ∇φ.
 ///
-/// Along one axis a particle has three kinds of factor for a node: the weight w, the moment d = w (X_i − X_p) and the slope g = dφ/dX. A tensor-product quantity along axis k
-/// takes d or g on axis k and w on the others. Affine velocities go with d, forces and gradients with g (spline) or d (mls).
+/// Along one axis a particle has three kinds of factor for a node: the weight w, the moment d = w (X_i − X_p) and the slope g = dφ/dX. A
+/// tensor-product quantity along axis k takes d or g on axis k and w on the others. Affine velocities go with d, forces and gradients with
+/// g (spline) or d (mls).
 template <class T_, int Dim_, int S_, deck::Transfer kTransfer, bool kMls>
 struct Scheme {
   using T = T_;

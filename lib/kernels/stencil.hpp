@@ -74,7 +74,7 @@ struct Stencils {
 
   alignas(64) int base[W];
   alignas(64) T w[Dim - 1][S][W], d[Dim - 1][S][W], g[Dim - 1][S][W];  // axes but the last, to be broadcast
-  ParticleRows<T, 4 * quads> last;                                         // the last axis, to be spread
+  ParticleRows<T, 4 * quads> last;                                     // the last axis, to be spread
 
   JAXMPM_INLINE Stencils(const Particles<T, Dim>& p, std::size_t s, int count, const Index<Dim>& origin) {
     constexpr int A = Sch::Shape::A;

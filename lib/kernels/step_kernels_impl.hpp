@@ -5,9 +5,10 @@
 namespace jaxmpm {
 
 template <class Sch>
-TileReport gather_tile(Particles<typename Sch::T, Sch::Dim>& p, const Tile& tile, const Blocks<Sch::Dim>& blocks, const typename Sch::T* grid,
-                       const MaterialKernel<typename Sch::T, Sch::Dim>& material, const StepConstants<typename Sch::T>& step, bool account,
-                       const Index<Sch::Dim>& origin, const DomainBounds<Sch::Dim>& domain) {
+TileReport gather_tile(Particles<typename Sch::T, Sch::Dim>& p, const Tile& tile, const Blocks<Sch::Dim>& blocks,
+                       const typename Sch::T* grid, const MaterialKernel<typename Sch::T, Sch::Dim>& material,
+                       const StepConstants<typename Sch::T>& step, bool account, const Index<Sch::Dim>& origin,
+                       const DomainBounds<Sch::Dim>& domain) {
   alignas(64) typename Sch::T arena[Sch::arena_size];
   load_arena<Sch>(blocks, tile.block, grid, arena);
   return g2p_tile<Sch>(p, tile.begin, tile.end, material, step, account, origin, domain, arena);
@@ -34,12 +35,15 @@ template <class T, int Dim, int S, bool mls>
 StepKernels<T, Dim> kernels_of(deck::Transfer transfer) {
   using deck::Transfer;
   switch (transfer) {
-    case Transfer::pic: return kernels_of<Scheme<T, Dim, S, Transfer::pic, mls>>();
-    case Transfer::flip: return kernels_of<Scheme<T, Dim, S, Transfer::flip, mls>>();
+    case Transfer::pic:
+      return kernels_of<Scheme<T, Dim, S, Transfer::pic, mls>>();
+    case Transfer::flip:
+      return kernels_of<Scheme<T, Dim, S, Transfer::flip, mls>>();
     case Transfer::apic:  // with linear splines APIC is TPIC
       if constexpr (S > 2) return kernels_of<Scheme<T, Dim, S, Transfer::apic, mls>>();
       [[fallthrough]];
-    case Transfer::tpic: break;
+    case Transfer::tpic:
+      break;
   }
   return kernels_of<Scheme<T, Dim, S, Transfer::tpic, mls>>();
 }

@@ -26,20 +26,32 @@ struct BodySnapshot {
   std::vector<double> strain_energy;      // N, J
 };
 struct FieldSelection {
-  bool velocity = false, density = false, pressure = false, stress = false, velocity_gradient = false, plastic_strain = false, energy = false;
+  bool velocity = false, density = false, pressure = false, stress = false, velocity_gradient = false, plastic_strain = false,
+       energy = false;
 };
 
 /// Sums since the start of the run, J: dissipation that an energy gauge reports. Zero unless model.account_energy.
-struct Dissipation { double plastic = 0, viscous = 0, friction = 0; };
+struct Dissipation {
+  double plastic = 0, viscous = 0, friction = 0;
+};
 
 /// One array of a checkpoint: raw bytes with their type ("f4", "f8", "u4", "i8") and shape.
-struct RawArray { std::string name, type; std::vector<std::size_t> shape; std::vector<unsigned char> bytes; };
+struct RawArray {
+  std::string name, type;
+  std::vector<std::size_t> shape;
+  std::vector<unsigned char> bytes;
+};
 
 /// Seconds spent in each phase of the step since the start of the run.
-struct PhaseSeconds { double sort = 0, p2g = 0, grid = 0, g2p = 0; };
+struct PhaseSeconds {
+  double sort = 0, p2g = 0, grid = 0, g2p = 0;
+};
 
 /// Impulse that a wall face or obstacle has given to the material during the last step divided by Δt, N.
-struct ContactForces { std::array<Point, 6> face{}; std::vector<Point> obstacle; };
+struct ContactForces {
+  std::array<Point, 6> face{};
+  std::vector<Point> obstacle;
+};
 
 class Solver {
  public:

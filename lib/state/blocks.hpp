@@ -1,9 +1,10 @@
 #pragma once
 // The sparse grid: blocks of B cells along each axis, of which only those with particles, and their neighbours, exist.
 //
-// Each tile (the particles of one body whose base node lies in one block) scatters to an arena of its own, which holds the block's nodes and a halo:
-// one node below, S above, as far as stencils reach when no particle has moved more than one cell since the last sort. The grid update then adds, for each
-// active block, the arenas of the neighbours in a fixed order: no atomics, and the same bits with any number of threads.
+// Each tile (the particles of one body whose base node lies in one block) scatters to an arena of its own, which holds the block's nodes
+// and a halo: one node below, S above, as far as stencils reach when no particle has moved more than one cell since the last sort. The grid
+// update then adds, for each active block, the arenas of the neighbours in a fixed order: no atomics, and the same bits with any number of
+// threads.
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -30,8 +31,11 @@ struct BlockShape {
   static constexpr int own_node(int i, int j, int k) { return Dim == 2 ? i * B + j : (i * B + j) * B + k; }
 };
 
-/// Along one axis, what the arena of the neighbour at distance d ∈ {−1, 0, 1} holds of a block's own nodes: `count` nodes from `from`, at `in_arena` there.
-struct Overlap { int from, count, in_arena; };
+/// Along one axis, what the arena of the neighbour at distance d ∈ {−1, 0, 1} holds of a block's own nodes: `count` nodes from `from`, at
+/// `in_arena` there.
+struct Overlap {
+  int from, count, in_arena;
+};
 template <int B, int S>
 constexpr Overlap overlap(int d) {
   if (d < 0) return {0, S, B + 1};
@@ -40,17 +44,22 @@ constexpr Overlap overlap(int d) {
 }
 
 /// Particles of one body in one block, [begin, end) in the body's arrays.
-struct Tile { std::uint32_t body, block; std::size_t begin, end; };
+struct Tile {
+  std::uint32_t body, block;
+  std::size_t begin, end;
+};
 /// An arena that reaches a block: the tile and the neighbour it lies in (0 … 3^Dim − 1).
-struct Contribution { std::uint32_t tile, neighbour; };
+struct Contribution {
+  std::uint32_t tile, neighbour;
+};
 
 /// Active blocks in the order of their keys, the tiles, and who contributes to whom. Rebuilt at each sort.
 template <int Dim>
 struct Blocks {
   static constexpr int none = -1;
-  std::vector<Index<Dim>> index;                // block coordinates, see BlockShape::first_node
-  std::vector<int> neighbour;                   // [block][3^Dim] active block or none
-  std::vector<Tile> tiles;                      // by body, then by block
+  std::vector<Index<Dim>> index;                  // block coordinates, see BlockShape::first_node
+  std::vector<int> neighbour;                     // [block][3^Dim] active block or none
+  std::vector<Tile> tiles;                        // by body, then by block
   std::vector<std::uint32_t> first_contribution;  // [block + 1]
   std::vector<Contribution> contributions;
   std::size_t count() const { return index.size(); }

@@ -19,14 +19,17 @@ struct AlignedAllocator {
   template <class U>
   void construct(U*) noexcept {}  // left uninitialised: every array is written before it is read
   template <class U, class... A>
-  void construct(U* p, A&&... a) { ::new (static_cast<void*>(p)) U(std::forward<A>(a)...); }
+  void construct(U* p, A&&... a) {
+    ::new (static_cast<void*>(p)) U(std::forward<A>(a)...);
+  }
   friend bool operator==(AlignedAllocator, AlignedAllocator) { return true; }
   friend bool operator!=(AlignedAllocator, AlignedAllocator) { return false; }
 };
 template <class T>
 using Array = std::vector<T, AlignedAllocator<T>>;
 
-/// Fields of one body. Sizes of the second level: position and velocity Dim, affine Dim·Dim or none, gradient Dim·Dim or none, history as the material asks.
+/// Fields of one body. Sizes of the second level: position and velocity Dim, affine Dim·Dim or none, gradient Dim·Dim or none, history as
+/// the material asks.
 template <class T, int Dim>
 struct Particles {
   std::vector<Array<double>> position;  // cells from domain.min
@@ -42,9 +45,13 @@ struct Particles {
 
   /// The field table: calls f(name, array) for every array, in a fixed order. Sort, checkpoint and memory estimate all go through it.
   template <class F>
-  void for_each_field(F&& f) { visit(*this, f); }
+  void for_each_field(F&& f) {
+    visit(*this, f);
+  }
   template <class F>
-  void for_each_field(F&& f) const { visit(*this, f); }
+  void for_each_field(F&& f) const {
+    visit(*this, f);
+  }
 
   std::size_t bytes_per_particle() const {
     std::size_t sum = 0;

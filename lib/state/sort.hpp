@@ -27,7 +27,8 @@ struct SortScratch {
 template <int Dim, int S>
 Index<Dim> block_extent(const std::array<int, 3>& cells) {
   Index<Dim> n{};
-  for (int d = 0; d < Dim; ++d) n[std::size_t(d)] = (cells[std::size_t(d)] + S) / BlockShape<Dim, S>::B + 2 * BlockShape<Dim, S>::margin + 1;
+  for (int d = 0; d < Dim; ++d)
+    n[std::size_t(d)] = (cells[std::size_t(d)] + S) / BlockShape<Dim, S>::B + 2 * BlockShape<Dim, S>::margin + 1;
   return n;
 }
 
@@ -53,8 +54,8 @@ void permute(Array<From>& field, Array<From>& scratch, const std::vector<std::ui
 
 /// Sorts the particles of one body and appends its tiles (with block keys in `tile_key`).
 template <int S, class T, int Dim>
-void sort_particles(Particles<T, Dim>& particles, std::uint32_t body, const Index<Dim>& extent, SortScratch<T>& scratch, std::vector<Tile>& tiles,
-                    std::vector<std::int64_t>& tile_key) {
+void sort_particles(Particles<T, Dim>& particles, std::uint32_t body, const Index<Dim>& extent, SortScratch<T>& scratch,
+                    std::vector<Tile>& tiles, std::vector<std::int64_t>& tile_key) {
   using Shape = BlockShape<Dim, S>;
   constexpr int B = Shape::B;
   const std::size_t n = particles.count();
@@ -74,7 +75,8 @@ void sort_particles(Particles<T, Dim>& particles, std::uint32_t body, const Inde
   next.assign(filled.size() * Shape::cells + 1, 0);
   std::size_t rank = 0;
   const auto slot = [&](std::size_t a) {
-    if (filled[rank] != scratch.block_key[a]) rank = std::size_t(std::lower_bound(filled.begin(), filled.end(), scratch.block_key[a]) - filled.begin());
+    if (filled[rank] != scratch.block_key[a])
+      rank = std::size_t(std::lower_bound(filled.begin(), filled.end(), scratch.block_key[a]) - filled.begin());
     return rank * Shape::cells + scratch.cell[a];
   };
   for (std::size_t a = 0; a < n; ++a) ++next[slot(a) + 1];

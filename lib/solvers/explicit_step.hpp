@@ -1,0 +1,66 @@
+#pragma once
+// The explicit stepper on the host (Du & He 2025, Eqs 9–18), one instance per precision and dimension.
+#include "kernels/g2p.hpp"
+#include "solvers/grid_update.hpp"
+
+namespace jaxmpm {
+
+template <class T, int Dim>
+class ExplicitStep final : public Solver {
+ public:
+  explicit ExplicitStep(const Model& model);
+
+  void step(double dt) override;
+  double stable_step() const override;
+
+  std::uint64_t particle_count() const override;
+  std::vector<BodySnapshot> snapshot(const FieldSelection& fields, bool ordered) const override;
+  void record_forces(bool on) override;
+  ContactForces forces() const override;
+  Dissipation dissipation() const override { return dissipation_; }
+  std::vector<RawArray> save() const override;
+  void restore(const std::vector<RawArray>& arrays) override;
+  double bytes_per_particle() const override;
+  PhaseSeconds phase_seconds() const override { return seconds_; }
+  std::size_t active_blocks() const override { return blocks_.count(); }
+
+ private:
+  /// Particles may move this far, in cells, before they are sorted again: far enough to be rare, near enough that most still share a
+  /// stencil with their neighbours.
+  static constexpr double sort_after = 0.3;
+
+  void seed(std::size_t body);
+  bool sort_is_due() const { return drift_ > sort_after; }
+  void sort();
+  void rebuild_blocks();
+  void p2g();
+  void update_grid(double dt);
+  void g2p();
+  void collect(double dt);
+  Index<Dim> arena_origin(const Tile& tile) const;
+  [[noreturn]] void report_failure() const;
+
+  Model model_;
+  StepKernels<T, Dim> kernels_;
+  std::vector<std::unique_ptr<MaterialKernel<T, Dim>>> materials_;  // [body]
+  std::vector<Particles<T, Dim>> bodies_;
+  Index<Dim> extent_;
+  DomainBounds<Dim> domain_;
+
+  Blocks<Dim> blocks_;
+  std::vector<std::int64_t> tile_key_;
+  SortScratch<T> scratch_;
+  Array<T> arenas_;
+  GridUpdate<T, Dim> grid_;
+  StepConstants<T> constants_;
+  std::vector<TileReport> reports_;
+
+  double drift_ = 0;    // cells, since the last sort
+  double fastest_ = 0;  // m/s, largest c + |v| of the present state
+  double last_dt_ = 0;
+  bool record_forces_ = false;
+  Dissipation dissipation_;
+  PhaseSeconds seconds_;
+};
+
+}  // namespace jaxmpm

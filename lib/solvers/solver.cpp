@@ -1,0 +1,35 @@
+#include "solvers/solver.hpp"
+
+#include "core/error.hpp"
+#include "solvers/explicit_step.hpp"
+
+namespace jaxmpm {
+namespace {
+
+/// Nodes near opposite faces must not be each other's images.
+void check_extent(const Model& model) {
+  for (int d = 0; d < model.dim; ++d)
+    if (model.cells[std::size_t(d)] < 4)
+      throw DeckError("/domain", "the domain is " + std::to_string(model.cells[std::size_t(d)]) + " cells wide along " + "xyz"[d] +
+                                     "; walls need at least 4 cells between them. Use a smaller cell_size, or two dimensions where nothing "
+                                     "varies along that axis");
+}
+
+template <class T>
+std::unique_ptr<Solver> make_host_solver(const Model& model) {
+  if (model.dim == 2) return std::make_unique<ExplicitStep<T, 2>>(model);
+  return std::make_unique<ExplicitStep<T, 3>>(model);
+}
+
+}  // namespace
+
+bool has_backend(Backend backend) { return backend == Backend::cpu; }
+
+std::unique_ptr<Solver> make_solver(const Model& model, Backend backend) {
+  check_extent(model);
+  if (!has_backend(backend))
+    throw Error(ExitCode::deck, "this program was built without CUDA; use --backend cpu, or build with scripts/build-cuda");
+  return model.method.precision == deck::Precision::f32 ? make_host_solver<float>(model) : make_host_solver<double>(model);
+}
+
+}  // namespace jaxmpm
