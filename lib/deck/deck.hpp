@@ -1,6 +1,7 @@
 #pragma once
 // The deck as plain structs: what `read_deck` returns and what everything above it reads. SI units, angles in degrees.
-// Optional keys that were not given are empty optionals or hold their default. Ranges, units and documentation are in the describe() functions.
+// Optional keys that were not given are empty optionals or hold their default. Ranges, units and documentation are in the describe()
+// functions.
 #include <array>
 #include <cstdint>
 #include <map>
@@ -13,8 +14,15 @@ namespace jaxmpm::deck {
 
 using Numbers = std::vector<double>;
 
-struct Domain { Numbers min, max; double cell_size = 0; };
-struct Time { double end = 0; std::optional<double> step; /* empty: "auto" */ double cfl = 0.4; };
+struct Domain {
+  Numbers min, max;
+  double cell_size = 0;
+};
+struct Time {
+  double end = 0;
+  std::optional<double> step; /* empty: "auto" */
+  double cfl = 0.4;
+};
 
 enum class Transfer { pic, flip, apic, tpic };
 enum class Basis { linear, quadratic, cubic };
@@ -28,44 +36,92 @@ struct Method {
   Precision precision = Precision::f64;
 };
 
-struct Newtonian { double density = 0, sound_speed = 0, viscosity = 0; std::optional<double> tension_limit; };
+struct Newtonian {
+  double density = 0, sound_speed = 0, viscosity = 0;
+  std::optional<double> tension_limit;
+};
 struct DruckerPrager {
   double density = 0, friction_angle = 0;
   std::optional<double> bulk_modulus, youngs_modulus, poisson_ratio;  // exactly two
   double dilation_angle = 0, cohesion = 0, tension_cutoff = 0;
 };
-struct LinearElastic { double density = 0, youngs_modulus = 0, poisson_ratio = 0; };
-struct NeoHookean { double density = 0, youngs_modulus = 0, poisson_ratio = 0; };
+struct LinearElastic {
+  double density = 0, youngs_modulus = 0, poisson_ratio = 0;
+};
+struct NeoHookean {
+  double density = 0, youngs_modulus = 0, poisson_ratio = 0;
+};
 using Material = std::variant<Newtonian, DruckerPrager, LinearElastic, NeoHookean>;
 
 struct Shape;
-struct Box { Numbers min, max; };
-struct Sphere { Numbers center; double radius = 0; };
-struct Cylinder { Numbers from, to; double radius = 0; };
-struct Polygon { std::vector<Numbers> points; };
-struct Mesh { std::string file; double scale = 1; Numbers offset; };
-struct HeightMap { std::string file; Numbers offset; double vertical_scale = 1; };
-struct AreaFile { std::string file; };
-struct Layer { HeightMap height_map; double thickness = 0; std::variant<std::vector<Numbers>, AreaFile> area; };
-struct Union { std::vector<Shape> shapes; };
-struct Difference { std::vector<Shape> shapes; };  // exactly two
-struct Shape { std::variant<Box, Sphere, Cylinder, Polygon, Mesh, HeightMap, Layer, Union, Difference> kind; };
+struct Box {
+  Numbers min, max;
+};
+struct Sphere {
+  Numbers center;
+  double radius = 0;
+};
+struct Cylinder {
+  Numbers from, to;
+  double radius = 0;
+};
+struct Polygon {
+  std::vector<Numbers> points;
+};
+struct Mesh {
+  std::string file;
+  double scale = 1;
+  Numbers offset;
+};
+struct HeightMap {
+  std::string file;
+  Numbers offset;
+  double vertical_scale = 1;
+};
+struct AreaFile {
+  std::string file;
+};
+struct Layer {
+  HeightMap height_map;
+  double thickness = 0;
+  std::variant<std::vector<Numbers>, AreaFile> area;
+};
+struct Union {
+  std::vector<Shape> shapes;
+};
+struct Difference {
+  std::vector<Shape> shapes;
+};  // exactly two
+struct Shape {
+  std::variant<Box, Sphere, Cylinder, Polygon, Mesh, HeightMap, Layer, Union, Difference> kind;
+};
 
 struct Mlp {
-  std::vector<std::string> inputs; std::vector<int> hidden; std::string activation = "relu"; std::uint64_t seed = 1;
-  Numbers input_scale; double output_scale = 1;
+  std::vector<std::string> inputs;
+  std::vector<int> hidden;
+  std::string activation = "relu";
+  std::uint64_t seed = 1;
+  Numbers input_scale;
+  double output_scale = 1;
 };
 using Component = std::variant<double, std::string, Mlp>;  // a number, an expression of x, y, z and parameters, a network
-struct ParticleFile { std::string file; };
+struct ParticleFile {
+  std::string file;
+};
 using Velocity = std::variant<std::vector<Component>, ParticleFile>;  // an empty list: at rest
 
-struct SurfacePoint { Numbers point; };
+struct SurfacePoint {
+  Numbers point;
+};
 struct InitialStress {
   enum class Kind { none, hydrostatic, geostatic, k0 } kind = Kind::none;
-  double k0 = 0;                         // kind k0
-  std::optional<SurfacePoint> surface;   // where gravity is along no axis
+  double k0 = 0;                        // kind k0
+  std::optional<SurfacePoint> surface;  // where gravity is along no axis
 };
-struct Jitter { double fraction = 0; std::uint64_t seed = 1; };
+struct Jitter {
+  double fraction = 0;
+  std::uint64_t seed = 1;
+};
 struct Body {
   std::string name, material;
   Shape shape;
@@ -77,23 +133,46 @@ struct Body {
 };
 
 enum class ContactKind { slip, no_slip, separate, friction };
-struct Segment { double to = 0, coefficient = 0; };
-struct Wall { ContactKind kind = ContactKind::slip; double coefficient = 0; std::vector<Segment> segments; };
-struct Obstacle { std::string name; Shape shape; ContactKind kind = ContactKind::separate; double coefficient = 0; };
+struct Segment {
+  double to = 0, coefficient = 0;
+};
+struct Wall {
+  ContactKind kind = ContactKind::slip;
+  double coefficient = 0;
+  std::vector<Segment> segments;
+};
+struct Obstacle {
+  std::string name;
+  Shape shape;
+  ContactKind kind = ContactKind::separate;
+  double coefficient = 0;
+};
 
 struct FrontGauge {
-  std::string body, axis, direction = "+";       // axis: x, y, z or radius (about center)
+  std::string body, axis, direction = "+";        // axis: x, y, z or radius (about center)
   std::optional<double> quantile, depth, smooth;  // quantile 0.995 unless depth is given; smooth: cell_size
   bool connected = false;
   Numbers center;
 };
-struct RegionMeanGauge { std::string field; Numbers min, max; };
-struct HeightGauge { Numbers at; };
-struct PressureGauge { Numbers at; };
-struct ForceGauge { std::string obstacle, wall; };  // exactly one
+struct RegionMeanGauge {
+  std::string field;
+  Numbers min, max;
+};
+struct HeightGauge {
+  Numbers at;
+};
+struct PressureGauge {
+  Numbers at;
+};
+struct ForceGauge {
+  std::string obstacle, wall;
+};  // exactly one
 struct EnergyGauge {};
 struct MomentumGauge {};
-struct ParticlesGauge { std::vector<std::int64_t> ids; std::vector<std::string> fields; };
+struct ParticlesGauge {
+  std::vector<std::int64_t> ids;
+  std::vector<std::string> fields;
+};
 using Gauge = std::variant<FrontGauge, RegionMeanGauge, HeightGauge, PressureGauge, ForceGauge, EnergyGauge, MomentumGauge, ParticlesGauge>;
 
 struct Output {
@@ -126,7 +205,8 @@ struct Deck {
   int dimension() const { return static_cast<int>(domain.min.size()); }
 };
 
-/// Reads, applies `--set` assignments ("/pointer=JSON") and checks a deck. Throws DeckError with every problem at once, IoError if unreadable.
+/// Reads, applies `--set` assignments ("/pointer=JSON") and checks a deck. Throws DeckError with every problem at once, IoError if
+/// unreadable.
 Deck read_deck(const std::string& path, const std::vector<std::string>& assignments = {});
 
 /// JSON Schema (draft 2020-12) of the deck, and its reference in Markdown; both from the same describe() functions as the reader.

@@ -1,0 +1,135 @@
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "deck/check.hpp"
+#include "deck/descriptions.hpp"
+
+namespace jaxmpm::deck {
+
+using described::join;
+using described::Place;
+using described::shown_number;
+
+void check_reference(const std::string& name, const std::vector<std::string>& names, const std::string& what, const Place& place) {
+  if (std::find(names.begin(), names.end(), name) != names.end()) return;
+  const std::string choices = names.empty() ? "; the deck has none: add it" : "; choose one of: " + described::listed(names);
+  place.problem("there is no " + what + " \"" + name + "\"" + described::suggestion(name, names) + choices);
+}
+
+namespace {
+
+bool sound(const Place& root, const std::string& pointer) { return !root.reader.troubled(pointer); }
+
+std::string item(const std::string& list, std::size_t index) { return join("/" + list, std::to_string(index)); }
+
+void check_unique(const std::vector<std::string>& names, const std::string& list, const Place& root) {
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto first = std::find(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(i), names[i]) - names.begin();
+    const std::string pointer = join(item(list, i), "name");
+    if (static_cast<std::size_t>(first) < i && sound(root, pointer))
+      root.reader.problem(
+          pointer, "\"" + names[i] + "\" is the name of " + item(list, static_cast<std::size_t>(first)) + " already; choose another");
+  }
+}
+
+void check_materials(const Deck& deck, const Place& root) {
+  std::set<std::string> used;
+  bool all_read = root.given("bodies") && root.value["bodies"].is_array();
+  for (std::size_t i = 0; i < deck.bodies.size(); ++i) {
+    const std::string pointer = join(item("bodies", i), "material");
+    used.insert(deck.bodies[i].material);
+    all_read = all_read && sound(root, pointer);
+    if (sound(root, pointer) && sound(root, item("bodies", i)))
+      check_reference(deck.bodies[i].material, names_in(deck.materials), "material", root.key("bodies").item(i).key("material"));
+  }
+  for (const auto& [name, material] : deck.materials)
+    if (all_read && used.count(name) == 0)
+      root.reader.problem(join("/materials", name), "no body uses this material; give it to one or remove it");
+}
+
+bool along_an_axis(const Numbers& gravity) {
+  return std::count_if(gravity.begin(), gravity.end(), [](double g) { return g != 0; }) == 1;
+}
+
+void check_initial_stress(const Deck& deck, const Place& root) {
+  using Kind = InitialStress::Kind;
+  for (std::size_t i = 0; i < deck.bodies.size(); ++i) {
+    const Body& body = deck.bodies[i];
+    const std::string pointer = join(item("bodies", i), "initial_stress");
+    if (body.initial_stress.kind == Kind::none || !sound(root, item("bodies", i)) || !sound(root, "/gravity")) continue;
+    if (std::all_of(deck.gravity.begin(), deck.gravity.end(), [](double g) { return g == 0; }))
+      root.reader.problem(pointer, "has no effect without gravity; remove it");
+    else if (!along_an_axis(deck.gravity) && !body.initial_stress.surface)
+      root.reader.problem(pointer, "needs surface {point}: gravity is along no axis");
+    const auto material = deck.materials.find(body.material);
+    if (body.initial_stress.kind != Kind::hydrostatic && material != deck.materials.end() &&
+        std::holds_alternative<Newtonian>(material->second))
+      root.reader.problem(pointer, "a fluid bears no geostatic stress; choose \"hydrostatic\" or \"none\"");
+  }
+}
+
+std::set<std::string> identifiers(const std::string& expression) {
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < expression.size();) {
+    const auto part = [&](std::size_t at) {
+      return at < expression.size() && (std::isalnum(static_cast<unsigned char>(expression[at])) || expression[at] == '_');
+    };
+    std::size_t end = i;
+    while (part(end)) ++end;
+    if (end > i && !std::isdigit(static_cast<unsigned char>(expression[i]))) names.insert(expression.substr(i, end - i));
+    i = std::max(end, i + 1);
+  }
+  return names;
+}
+
+void check_parameters(const Deck& deck, const Place& root) {
+  std::set<std::string> used;
+  for (const Body& body : deck.bodies)
+    if (const auto* components = std::get_if<std::vector<Component>>(&body.velocity))
+      for (const Component& component : *components)
+        if (const auto* text = std::get_if<std::string>(&component)) used.merge(identifiers(*text));
+  for (const auto& [name, value] : deck.parameters) {
+    const std::string pointer = join("/parameters", name);
+    if (name == "x" || name == "y" || name == "z") root.reader.problem(pointer, "is the name of a coordinate; choose another");
+    else if (name.find_first_of(".-") != std::string::npos)
+      root.reader.problem(pointer, "a parameter's name has only letters, digits and _");
+    else if (used.count(name) == 0 && sound(root, "/bodies")) root.reader.problem(pointer, "no expression uses this parameter; remove it");
+  }
+}
+
+/// A wall's segments run along the first axis other than its own, from the domain's min to its max.
+void check_segments(const Deck& deck, const std::string& face, const Wall& wall, const Place& root) {
+  const std::string pointer = join("/walls", face);
+  if (wall.segments.empty() || !sound(root, pointer) || !sound(root, "/domain")) return;
+  const std::size_t axis = face[0] == 'x' ? 1 : 0, last = wall.segments.size() - 1;
+  const double min = deck.domain.min[axis], max = deck.domain.max[axis], tolerance = 1e-6 * deck.domain.cell_size;
+  const Place list = root.key("walls").key(face).key("segments");
+  const std::string along = std::string(1, "xyz"[axis]);
+  if (wall.segments[0].to <= min) list.item(0).problem("to", "must be above the domain's min along " + along + ", " + shown_number(min));
+  if (std::fabs(wall.segments[last].to - max) > tolerance)
+    list.item(last).problem("to", "the last segment must end at the domain's max along " + along + ", " + shown_number(max) + ", found " +
+                                      shown_number(wall.segments[last].to));
+}
+
+void check_walls(const Deck& deck, const Place& root) {
+  const int dimension = root.reader.dimension();
+  for (const auto& [face, wall] : deck.walls) {
+    if (dimension == 2 && face[0] == 'z')
+      root.reader.problem(join("/walls", face), "a 2D domain has no such face; choose one of: " + described::listed(face_names(2)));
+    else if (root.given("walls")) check_segments(deck, face, wall, root);
+  }
+}
+
+}  // namespace
+
+void check_scene(const Deck& deck, const Place& root) {
+  check_unique(names_in(deck.bodies), "bodies", root);
+  check_unique(names_in(deck.obstacles), "obstacles", root);
+  check_materials(deck, root);
+  check_initial_stress(deck, root);
+  check_parameters(deck, root);
+  check_walls(deck, root);
+}
+
+}  // namespace jaxmpm::deck

@@ -1,0 +1,69 @@
+// Walls and obstacles.
+#include "deck/descriptions.hpp"
+
+namespace jaxmpm::deck {
+
+described::EnumNames<ContactKind> names_of(ContactKind) {
+  return {{ContactKind::slip, "slip"},
+          {ContactKind::no_slip, "no_slip"},
+          {ContactKind::separate, "separate"},
+          {ContactKind::friction, "friction"}};
+}
+
+std::vector<std::string> face_names(int dimension) {
+  std::vector<std::string> names{"x_min", "x_max", "y_min", "y_max"};
+  if (dimension != 2) names.insert(names.end(), {"z_min", "z_max"});
+  return names;
+}
+
+void describe(Description<Segment>& d) {
+  d.is("segment", "A stretch of a wall with its own friction.");
+  d.required("to", &Segment::to).unit("m").help("Where it ends: absolute coordinate along the first axis other than the wall's own.");
+  d.required("coefficient", &Segment::coefficient).from(0).help("Coulomb friction μ.");
+}
+
+void describe(Description<Wall>& d) {
+  d.is("wall", "Contact law of a face of the domain.");
+  d.optional("kind", &Wall::kind)
+      .help("slip: no flow through it, both ways; no_slip: at rest; separate and friction: only where the material presses on it.");
+  d.optional("coefficient", &Wall::coefficient)
+      .from(0)
+      .when([](const Wall& wall) { return wall.kind == ContactKind::friction && wall.segments.empty(); },
+            "kind \"friction\" and no segments")
+      .otherwise("required unless segments are given")
+      .help("Coulomb friction μ; 0 is separate.");
+  d.optional("segments", &Wall::segments)
+      .items(1)
+      .when([](const Wall& wall) { return wall.kind == ContactKind::friction && !wall.segments.empty(); }, "kind \"friction\"")
+      .otherwise("one coefficient for the whole wall")
+      .help("Friction by stretches, in increasing order; the last ends at the domain's maximum.");
+  d.check([](const Wall& wall, const described::Place& place) {
+    if (wall.kind == ContactKind::friction && !place.given("coefficient") && !place.given("segments"))
+      place.problem("coefficient", "is missing: kind \"friction\" needs it, or segments");
+    for (std::size_t i = 1; i < wall.segments.size(); ++i)
+      if (!(wall.segments[i].to > wall.segments[i - 1].to))
+        place.key("segments")
+            .item(i)
+            .problem("to", "must be above that of the segment before, " + described::shown_number(wall.segments[i - 1].to) +
+                               "; put the segments in increasing order");
+  });
+}
+
+void describe(Description<Obstacle>& d) {
+  d.is("obstacle", "A rigid solid at rest.");
+  d.required("name", &Obstacle::name).help("Unique among obstacles.");
+  d.required("shape", &Obstacle::shape);
+  d.optional("kind", &Obstacle::kind).help("As for walls.");
+  d.optional("coefficient", &Obstacle::coefficient)
+      .from(0)
+      .when([](const Obstacle& obstacle) { return obstacle.kind == ContactKind::friction; }, "kind \"friction\"")
+      .otherwise("required with kind \"friction\"")
+      .help("Coulomb friction μ.");
+  d.check([](const Obstacle& obstacle, const described::Place& place) {
+    described::check_name(obstacle.name, place.key("name"));
+    if (obstacle.kind == ContactKind::friction && !place.given("coefficient"))
+      place.problem("coefficient", "is missing: kind \"friction\" needs it");
+  });
+}
+
+}  // namespace jaxmpm::deck

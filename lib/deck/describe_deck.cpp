@@ -1,0 +1,29 @@
+// The deck as a whole.
+#include "deck/descriptions.hpp"
+#include "deck/inverse.hpp"
+
+namespace jaxmpm::deck {
+namespace {
+constexpr int format = 1;
+}
+
+void describe(Description<Deck>& d) {
+  d.is("deck", "A scene and what to do with it: JSON with // comments, SI units, angles in degrees.");
+  d.fixed("$schema", nullptr, false, "Where an editor finds the schema.");
+  d.fixed("jaxmpm", format, true, "Format of the deck, 1.");
+  d.optional("title", &Deck::title).help("One line for people.");
+  d.required("domain", &Deck::domain);
+  d.required("gravity", &Deck::gravity).unit("m/s²").vector().help("Any axis may be up.");
+  d.required("time", &Deck::time);
+  d.optional("method", &Deck::method);
+  d.optional("parameters", &Deck::parameters).help("Names for expressions; they may be unknowns of an inverse problem.");
+  d.required("materials", &Deck::materials).items(1).help("By name.");
+  d.required("bodies", &Deck::bodies).items(1);
+  d.optional("walls", &Deck::walls).choices(face_names(3)).help("By face; a face not named is slip.");
+  d.optional("obstacles", &Deck::obstacles);
+  d.optional("gauges", &Deck::gauges).help("By name.");
+  d.required("output", &Deck::output);
+  d.optional_as<InverseText>("inverse", &Deck::inverse).otherwise("none").help("Read by invert and gradient, ignored by run.");
+}
+
+}  // namespace jaxmpm::deck

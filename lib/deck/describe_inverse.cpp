@@ -1,0 +1,173 @@
+// Unknowns, observations, optimisers.
+#include <cstdlib>
+
+#include "deck/inverse.hpp"
+
+namespace jaxmpm::deck {
+
+using described::Place;
+using described::shown_number;
+
+described::EnumNames<Transform> names_of(Transform) {
+  return {{Transform::none, "none"}, {Transform::log, "log"}, {Transform::logit, "logit"}};
+}
+
+namespace {
+
+void check_bounds(const Unknown& u, const Place& place) {
+  const bool bounded = u.bounds.has_value();
+  if (bounded && !((*u.bounds)[0] < (*u.bounds)[1])) place.problem("bounds", "must be the lower and the upper one, in this order");
+  if (u.transform == Transform::logit && !bounded) place.problem("transform", "\"logit\" needs bounds; give them, or choose none or log");
+  if (u.transform == Transform::log && bounded && (*u.bounds)[0] < 0)
+    place.problem("bounds", "must not be negative with transform \"log\"");
+}
+
+void check_start(const Unknown& u, const Place& place) {
+  const auto right = [&](double value) {
+    if (u.transform == Transform::log && !(value > 0))
+      place.problem("start", "must be above 0 with transform \"log\", found " + shown_number(value));
+    else if (u.bounds && (value < (*u.bounds)[0] || value > (*u.bounds)[1]))
+      place.problem("start", shown_number(value) + " is outside of bounds; move one of them");
+  };
+  if (const auto* value = std::get_if<double>(&u.start)) right(*value);
+  if (const auto* values = std::get_if<Numbers>(&u.start))
+    for (const double value : *values) right(value);
+}
+
+/// Keys that all kinds of observation share.
+template <class T>
+void describe_observed(Description<T>& d) {
+  const auto own = [](auto Observed::*member) {
+    return static_cast<std::remove_reference_t<decltype(std::declval<T&>().*member)> T::*>(member);
+  };
+  d.required("file", own(&Observed::file)).items(1).help("results.h5, or CSV with # comments and a header, looked for beside the deck.");
+  d.optional("from_time", own(&Observed::from_time))
+      .unit("s")
+      .from(0)
+      .otherwise("the first of the file")
+      .help("Earlier rows are left out.");
+  d.optional("to_time", own(&Observed::to_time)).unit("s").from(0).otherwise("the end").help("Later rows are left out.");
+  d.optional("every", own(&Observed::every)).unit("s").above(0).otherwise("every row").help("Time between the rows that count.");
+  d.optional("weight", own(&Observed::weight)).above(0).help("In the loss.");
+  d.optional("noise", own(&Observed::noise)).word("none").help("Added to the observed values.");
+  d.optional("mask", own(&Observed::mask)).help("What counts: \"none\", the name of a CSV column, or a box.");
+  d.check([](const T& o, const Place& place) {
+    if (o.from_time && o.to_time && *o.from_time > *o.to_time) place.problem("to_time", "must not be before from_time");
+  });
+}
+
+template <class T>
+void describe_stopping(Description<T>& d) {
+  d.optional("iterations", &T::iterations).from(1).help("At most.");
+  d.optional("tolerance", &T::tolerance).above(0).below(1).word("none").help("Ends when the loss falls by less than this part of itself.");
+}
+
+void check_memory(const Inverse& inverse, const Place& place) {
+  char* unit = nullptr;
+  const double amount = std::strtod(inverse.memory.c_str(), &unit);
+  const std::string name = unit;
+  if (!(amount > 0) || (name != " MiB" && name != " GiB" && name != " TiB"))
+    place.problem("memory", "expected an amount such as \"4 GiB\" (MiB, GiB or TiB), found \"" + inverse.memory + "\"");
+}
+
+}  // namespace
+
+void describe(Description<Prior>& d) {
+  d.is("prior", "Gaussian prior of an unknown.");
+  d.required("mean", &Prior::mean);
+  d.required("deviation", &Prior::deviation).above(0).help("Standard deviation.");
+}
+
+void describe(Description<Unknown>& d) {
+  d.is("unknown", "A number of the deck that is to be found.");
+  d.required("path", &Unknown::path).items(2).help("JSON pointer; * stands for every key or index at its place.");
+  d.optional("start", &Unknown::start).otherwise("the deck's value").help("A number, or a list in the order of the pointers.");
+  d.optional("bounds", &Unknown::bounds).items(2, 2).word("none").help("Lower and upper one.");
+  d.optional("transform", &Unknown::transform).help("The optimiser works on the number, its logarithm, or its logit within the bounds.");
+  d.optional("share", &Unknown::share).help("One value for all pointers.");
+  d.optional("prior", &Unknown::prior).word("none");
+  d.check([](const Unknown& u, const Place& place) {
+    if (u.path[0] != '/') place.problem("path", "a JSON pointer starts with /");
+  });
+  d.check(check_bounds);
+  d.check(check_start);
+}
+
+void describe(Description<RandomSelection>& d) {
+  d.is("random", "Some particles, drawn at random.", "select");
+  d.required("random", &RandomSelection::random).from(1).help("How many.");
+  d.optional("seed", &RandomSelection::seed).from(0);
+}
+void describe(Description<IdSelection>& d) {
+  d.is("ids", "Particles by id.", "select");
+  d.required("ids", &IdSelection::ids).from(0).items(1).distinct();
+}
+void describe(Description<Noise>& d) {
+  d.is("noise", "Gaussian noise.");
+  d.required("deviation", &Noise::deviation).above(0).help("Standard deviation, in the unit of what is observed.");
+  d.optional("seed", &Noise::seed).from(0);
+}
+
+void describe(Description<ParticlesObservation>& d) {
+  d.is("particles", "A field of particles. CSV: time,id,x,y[,z] or time,id,vx,vy[,vz].", "observation");
+  d.required("body", &ParticlesObservation::body);
+  d.required("field", &ParticlesObservation::field).choices({"position", "velocity"});
+  d.optional("select", &ParticlesObservation::select).help("\"all\", {random, seed} or {ids}.");
+  describe_observed(d);
+}
+void describe(Description<GaugeObservation>& d) {
+  d.is("gauge", "Values of a gauge of the deck. CSV: time,value[,sigma].", "observation");
+  d.required("gauge", &GaugeObservation::gauge);
+  describe_observed(d);
+}
+void describe(Description<ProfileObservation>& d) {
+  d.is("profile", "Height of a body's deposit. CSV: x[,y],height.", "observation");
+  d.required("body", &ProfileObservation::body);
+  d.optional("time", &ProfileObservation::time).unit("s").from(0).word("end");
+  describe_observed(d);
+}
+
+void describe(Description<Adam>& d) {
+  d.is("adam", "Gradient descent with adaptive moments.", "optimizer");
+  d.optional("learning_rate", &Adam::learning_rate).above(0);
+  d.optional("decay", &Adam::decay).above(0).to(1).help("Factor on the learning rate after each iteration.");
+  describe_stopping(d);
+}
+void describe(Description<Lbfgs>& d) {
+  d.is("lbfgs", "Quasi-Newton method of limited memory, with bounds.", "optimizer");
+  d.optional("memory", &Lbfgs::memory).from(1).to(1000).help("Pairs of vectors kept.");
+  describe_stopping(d);
+}
+void describe(Description<GaussNewton>& d) {
+  d.is("gauss_newton", "Gauss–Newton method, for few unknowns.", "optimizer");
+  describe_stopping(d);
+}
+
+void describe(Description<Inverse>& d) {
+  d.is("inverse", "Unknowns of the deck and the observations they are to explain.");
+  d.required("unknowns", &Inverse::unknowns).items(1);
+  d.required("observations", &Inverse::observations).items(1);
+  d.optional("optimizer", &Inverse::optimizer).help("Chosen by `method`.");
+  d.optional("memory", &Inverse::memory).help("For checkpoints of the gradient: a number and MiB, GiB or TiB.");
+  d.check(check_memory);
+}
+
+namespace {
+Inverse read_inverse(const Place& place) {
+  Inverse inverse;
+  described::Codec<Inverse>::read(inverse, place, {});
+  return inverse;
+}
+}  // namespace
+
+void InverseText::read(std::string& out, const Place& place, const described::Limits& limits) {
+  out = described::Codec<Inverse>::write(read_inverse(place), limits).dump(2);
+}
+described::Json InverseText::write(const std::string& in, const described::Limits&) {
+  return in.empty() ? described::Json(described::Json::value_t::discarded) : described::Json::parse(in);
+}
+described::Json InverseText::schema(const described::Limits& limits, described::Schema& defs) {
+  return described::Codec<Inverse>::schema(limits, defs);
+}
+
+}  // namespace jaxmpm::deck

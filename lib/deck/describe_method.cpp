@@ -1,0 +1,98 @@
+// Domain, time and method.
+#include <cmath>
+
+#include "deck/descriptions.hpp"
+
+namespace jaxmpm::deck {
+namespace {
+
+/// Largest number of cells along an axis: what 21 bits of a block's key hold.
+constexpr double most_cells = 2097152;
+/// The extent must be whole cells to within this part of a cell.
+constexpr double whole_cell_tolerance = 1e-6;
+
+void check_axis(const Domain& domain, std::size_t axis, const described::Place& place) {
+  using described::shown_number;
+  const double extent = domain.max[axis] - domain.min[axis], h = domain.cell_size;
+  const std::string item = std::to_string(axis);
+  if (!(extent > 0)) {
+    place.key("max").item(axis).problem("must be above the same number of min, " + shown_number(domain.min[axis]));
+    return;
+  }
+  const double cells = extent / h, whole = std::round(cells);
+  if (whole > most_cells) {
+    place.problem("cell_size", "gives " + shown_number(whole) + " cells along axis " + item + "; at most " + shown_number(most_cells) +
+                                   " are possible: enlarge the cells or shrink the domain");
+  } else if (std::fabs(cells - whole) > whole_cell_tolerance || whole < 1) {
+    const double below = std::max(1.0, std::floor(cells)), above = below + 1;
+    place.problem("cell_size", "does not divide the extent " + shown_number(extent) + " of axis " + item + " into whole cells (" +
+                                   shown_number(cells) + "); nearest cell sizes: " + shown_number(extent / above) + " or " +
+                                   shown_number(extent / below) + ", nearest extents: " + shown_number(below * h) + " or " +
+                                   shown_number(above * h));
+  }
+}
+
+}  // namespace
+
+described::EnumNames<Transfer> names_of(Transfer) {
+  return {{Transfer::pic, "pic"}, {Transfer::flip, "flip"}, {Transfer::apic, "apic"}, {Transfer::tpic, "tpic"}};
+}
+described::EnumNames<Basis> names_of(Basis) {
+  return {{Basis::linear, "linear"}, {Basis::quadratic, "quadratic"}, {Basis::cubic, "cubic"}};
+}
+described::EnumNames<GradientForm> names_of(GradientForm) { return {{GradientForm::spline, "spline"}, {GradientForm::mls, "mls"}}; }
+described::EnumNames<Precision> names_of(Precision) { return {{Precision::f32, "f32"}, {Precision::f64, "f64"}}; }
+
+void describe(Description<Domain>& d) {
+  d.is("domain",
+       "The box of grid cells that holds everything. The length of `min` and `max`, 2 or 3, is the dimension; 2D is plane strain of unit "
+       "thickness.");
+  d.required("min", &Domain::min).unit("m").items(2, 3).help("Lower corner.");
+  d.required("max", &Domain::max).unit("m").items(2, 3).help("Upper corner. The extent along each axis is whole cells.");
+  d.required("cell_size", &Domain::cell_size).unit("m").above(0).help("Edge of a grid cell.");
+  d.check([](const Domain& domain, const described::Place& place) {
+    if (domain.min.size() != domain.max.size())
+      return place.problem(
+          "max", "must have as many numbers as min, " + std::to_string(domain.min.size()) + ", found " + std::to_string(domain.max.size()));
+    for (std::size_t axis = 0; axis < domain.min.size(); ++axis) check_axis(domain, axis, place);
+  });
+}
+
+void describe(Description<Time>& d) {
+  d.is("time", "How long, and in which steps. Frames and gauges are taken at the first step at or after their time.");
+  d.required("end", &Time::end).unit("s").above(0).help("Time at which the run ends; it starts at 0.");
+  d.optional("step", &Time::step)
+      .unit("s")
+      .above(0)
+      .word("auto")
+      .help("Time step; \"auto\" takes the largest stable one, anew at every step.");
+  d.optional("cfl", &Time::cfl)
+      .above(0)
+      .to(1)
+      .when([](const Time& time) { return !time.step; }, "an automatic step")
+      .help("Part of a cell that the fastest wave may cross in one step.");
+  d.check([](const Time& time, const described::Place& place) {
+    if (time.step && *time.step > time.end)
+      place.problem("step", "is longer than the run, " + described::shown_number(time.end) + " s; make it shorter");
+  });
+}
+
+void describe(Description<Method>& d) {
+  d.is("method", "How particles and grid exchange momentum, and in which precision.");
+  d.optional("transfer", &Method::transfer).help("Particle-in-cell, fluid-implicit-particle, affine or Taylor particle-in-cell.");
+  d.optional("flip_fraction", &Method::flip_fraction)
+      .from(0)
+      .to(1)
+      .when([](const Method& method) { return method.transfer == Transfer::flip; }, "transfer \"flip\"")
+      .help("Part of the velocity that is carried on by its change (FLIP); the rest is interpolated (PIC).");
+  d.optional("basis", &Method::basis).help("B-splines of the grid.");
+  d.optional("gradient", &Method::gradient)
+      .help("Velocity gradient and internal force from the spline's gradient, or by moving least squares.");
+  d.optional("precision", &Method::precision).help("Of particle and grid fields; positions are double always.");
+  d.check([](const Method& method, const described::Place& place) {
+    if (method.basis == Basis::linear && method.gradient == GradientForm::mls)
+      place.problem("gradient", "\"mls\" is singular with the linear basis; use \"spline\", or basis \"quadratic\" or \"cubic\"");
+  });
+}
+
+}  // namespace jaxmpm::deck
