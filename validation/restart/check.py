@@ -1,0 +1,57 @@
+"""Bitwise reproducibility: stopped and resumed, 1 and 2 threads, with and without output in between. Compares every dataset of the last frame."""
+import pathlib
+import signal
+import subprocess
+import sys
+import time
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from support import Check, np  # noqa: E402
+from results import Results  # noqa: E402
+
+STOPPED = 75  # exit code of a run that was stopped and left a checkpoint
+
+
+def same_bits(one, other):
+    a, b = one.frames[-1], other.frames[-1]
+    return a.time == b.time and a.step == b.step and all(np.array_equal(a.field(name), b.field(name)) for name in a.fields())
+
+
+def interrupted(check, deck, name, assignments, patience):
+    """Runs with a SIGTERM after `patience` seconds, then resumes until done. Returns the results and how often it was stopped."""
+    stops = 0
+    for _ in range(50):
+        words = check.command(deck, name, assignments, "--resume", "auto")
+        process = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        time.sleep(patience)
+        process.send_signal(signal.SIGTERM)
+        output, _ = process.communicate()
+        if process.returncode == 0:
+            return Results(check.out / name), stops
+        if process.returncode != STOPPED:
+            sys.exit(f"  {name}: exit {process.returncode}\n{output}")
+        stops, patience = stops + 1, patience * 1.3
+    sys.exit(f"  {name}: not done after {stops} stops")
+
+
+def main():
+    check = Check(__doc__, __file__)
+    coarse = {"/domain/cell_size": 0.0028575} if check.quick else {}
+    scenes = {
+        "water_column.json": {**coarse, "/time/end": 0.1},
+        "aluminium_bars.json": {"/domain/cell_size": 0.005, "/time/step": 2.5e-5, "/time/end": 0.2} if check.quick else {"/time/end": 0.2},
+    }
+    for deck, assignments in scenes.items():
+        stem = deck.removesuffix(".json")
+        whole = check.run(deck, f"{stem}_whole", assignments, "--threads", "2")
+        one = check.run(deck, f"{stem}_one_thread", assignments, "--threads", "1")
+        check.require(f"{deck}: 1 thread equals 2 threads", same_bits(whole, one))
+        quiet = check.run(deck, f"{stem}_quiet", {**assignments, "/output/interval": assignments["/time/end"], "/output/gauge_interval": assignments["/time/end"]})
+        check.require(f"{deck}: with output equals without", same_bits(whole, quiet))
+        resumed, stops = interrupted(check, deck, f"{stem}_resumed_{time.time_ns()}", assignments, max(0.3, whole.run()["seconds"] / 3))
+        check.require(f"{deck}: stopped {stops} times and resumed equals the whole run", stops > 0 and same_bits(whole, resumed))
+    check.finish()
+
+
+if __name__ == "__main__":
+    main()

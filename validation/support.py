@@ -1,0 +1,128 @@
+"""What the checks of this folder share: running a deck, comparing a figure with its band, drawing."""
+import argparse
+import csv
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT / "scripts" / "python"))
+
+import matplotlib  # noqa: E402
+import numpy as np  # noqa: E402
+
+from results import Results  # noqa: E402
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402
+
+GRAVITY = 9.81  # m/s², as in the decks
+
+
+class Check:
+    """One case: its options, its runs, its verdicts. Use: check = Check(__doc__, __file__) … check.finish()."""
+
+    def __init__(self, description, file):
+        parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
+        parser.add_argument("--quick", action="store_true", help="a coarse form that takes seconds, with bands of its own")
+        parser.add_argument("--reuse", action="store_true", help="take runs that are there and complete instead of running them again")
+        options = parser.parse_args()
+        self.quick, self.reuse = options.quick, options.reuse
+        self.name = pathlib.Path(file).resolve().parent.name
+        self.out = ROOT / "out" / "validation" / (self.name + ("_quick" if self.quick else ""))
+        self.out.mkdir(parents=True, exist_ok=True)
+        self.program = pathlib.Path(os.environ.get("JAXMPM", ROOT / "build" / "jaxmpm"))
+        self.failures = 0
+        print(f"{self.name}{' (quick)' if self.quick else ''}")
+
+    def command(self, deck, name, assignments=None, *more):
+        words = [str(self.program), "run", str(ROOT / "inputs" / deck), "-o", str(self.out / name), "-q", *more]
+        for pointer, value in (assignments or {}).items():
+            words += ["--set", f"{pointer}={value}"]
+        return words
+
+    def run(self, deck, name, assignments=None, *more):
+        """Runs inputs/DECK into out/validation/CASE/NAME and reads the results."""
+        target = self.out / name
+        if not (self.reuse and (target / "run.json").is_file()):
+            shutil.rmtree(target, ignore_errors=True)
+            done = subprocess.run(self.command(deck, name, assignments, *more), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
+            if done.returncode:
+                sys.exit(f"  {name}: exit {done.returncode}\n{done.stdout}")
+        results = Results(target)
+        summary = results.run()
+        print(f"  {name}: {summary['particles']} particles, {summary['steps']} steps, {summary['seconds']:.1f} s, {summary['particle_steps_per_second']:.3g} particle-steps/s")
+        return results
+
+    def band(self, what, value, limit, unit="", lower=None):
+        """Prints a figure and fails the check where it lies above `limit` or below `lower`."""
+        good = np.isfinite(value) and value <= limit and (lower is None or value >= lower)
+        allowed = f"at most {limit:g}" if lower is None else f"{lower:g} … {limit:g}"
+        print(f"  {'ok    ' if good else 'FAILED'} {what}: {value:.4g} {unit} ({allowed})".replace("  (", " ("))
+        self.failures += not good
+
+    def require(self, what, good):
+        print(f"  {'ok    ' if good else 'FAILED'} {what}")
+        self.failures += not good
+
+    def note(self, text):
+        print(f"         {text}")
+
+    def save(self, figure, name="comparison.png"):
+        figure.savefig(self.out / name, dpi=130)
+        plt.close(figure)
+        print(f"         picture: {self.out / name}")
+
+    def finish(self):
+        sys.exit(1 if self.failures else 0)
+
+
+def reference(name):
+    """Columns of a file of validation/data by their header, as arrays; text columns stay lists."""
+    with open(ROOT / "validation" / "data" / name, encoding="utf-8") as file:
+        rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+    columns = {}
+    for key in rows[0]:
+        texts = [row[key] for row in rows]
+        try:
+            columns[key] = np.array([float(t) if t else np.nan for t in texts])
+        except ValueError:
+            columns[key] = texts
+    return columns
+
+
+def depth_profile(frame, deck, axis=0, width=None):
+    """Depth of the material, m, at the middle of columns `width` wide (a cell unless given): volume in the column over its footprint, each
+    particle spread linearly over the two nearest columns. 2D. Volumes are those at the start, so that the profile holds all the mass."""
+    low, high = deck["domain"]["min"][axis], deck["domain"]["max"][axis]
+    width = width or deck["domain"]["cell_size"]
+    count = int(round((high - low) / width))
+    spacing2 = deck["domain"]["cell_size"] ** 2 / (deck["bodies"][0].get("particles_per_cell") or 4)
+    at = (frame.field("position")[:, axis] - low) / width - 0.5
+    left = np.floor(at).astype(int)
+    depth = np.zeros(count)
+    for column, share in ((left, 1 - (at - left)), (left + 1, at - left)):
+        np.add.at(depth, np.clip(column, 0, count - 1), share * spacing2 / width)
+    return low + (np.arange(count) + 0.5) * width, depth
+
+
+def distance_to_line(points, line):
+    """Distance of each point to a polyline, m."""
+    a, b = line[:-1], line[1:]
+    along = b - a
+    share = np.einsum("pij,ij->pi", points[:, None, :] - a, along) / np.maximum(np.einsum("ij,ij->i", along, along), 1e-300)
+    nearest = a + np.clip(share, 0, 1)[..., None] * along
+    return np.linalg.norm(points[:, None, :] - nearest, axis=2).min(axis=1)
+
+
+def first_crossing(x, y, level):
+    """x at which y first reaches `level` from below, interpolated; NaN where it never does."""
+    above = np.flatnonzero(np.asarray(y) >= level)
+    if len(above) == 0:
+        return np.nan
+    i = above[0]
+    if i == 0:
+        return x[0]
+    return x[i - 1] + (level - y[i - 1]) / (y[i] - y[i - 1]) * (x[i] - x[i - 1])
