@@ -136,8 +136,9 @@ bool check_list(const Place& place, const Limits& limits) {
     const bool plan = limits.length == Limits::Length::plan;
     const std::size_t expected = static_cast<std::size_t>(plan ? dimension - 1 : dimension);
     if (size != expected) {
-      place.problem("must have one number for each " + std::string(plan ? "horizontal axis" : "axis") + " of the " +
-                    std::to_string(dimension) + "D domain, " + std::to_string(expected) + ", found " + std::to_string(size));
+      place.problem("must have " + std::to_string(expected) + (expected == 1 ? " number" : " numbers") + ", one for each " +
+                    (plan ? "horizontal axis" : "axis") + " of the " + std::to_string(dimension) + "D domain, found " +
+                    std::to_string(size));
       return false;
     }
   }

@@ -62,6 +62,7 @@ struct Key {
   std::function<Json(const T&, const Limits&)> write;  // discarded: nothing to write
   std::function<Json(const Limits&, Schema&)> schema;
   std::function<bool(const T&)> matters;
+  std::vector<std::string> matters_by;  // keys that `matters` looks at
   std::function<void(T&, const Reader&)> fill;
 
   Key& help(std::string prose) {
@@ -115,8 +116,9 @@ struct Key {
     limits.distinct = true;
     return *this;
   }
-  /// The key has an effect only where the condition holds; elsewhere it is refused, and not written.
-  Key& when(std::function<bool(const T&)> holds, std::string words) {
+  /// The key has an effect only where the condition, which looks at the keys `by`, holds; elsewhere it is refused, and not written.
+  Key& when(std::vector<std::string> by, std::function<bool(const T&)> holds, std::string words) {
+    matters_by = std::move(by);
     matters = std::move(holds);
     condition = std::move(words);
     return *this;
@@ -160,8 +162,10 @@ class Description {
   }
   /// A key that belongs to the file, not to the struct: it must have this value (or, where `value` is null, may be any string).
   void fixed(const std::string& name, Json value, bool needed, const std::string& prose);
-  /// A check of several keys together, called when each of them alone is right.
-  void check(std::function<void(const T&, const Place&)> rule) { rules_.push_back(std::move(rule)); }
+  /// A check of several keys together, made when none of the keys `by` has a problem of its own.
+  void check(std::vector<std::string> by, std::function<void(const T&, const Place&)> rule) {
+    rules_.push_back({std::move(by), std::move(rule)});
+  }
   /// The struct exists only in this dimension.
   void only_in(int dimension) { dimension_ = dimension; }
 
@@ -183,7 +187,7 @@ class Description {
   std::string name_, definition_, text_;
   int dimension_ = 0;
   std::deque<Key<T>> keys_;
-  std::vector<std::function<void(const T&, const Place&)>> rules_;
+  std::vector<std::pair<std::vector<std::string>, std::function<void(const T&, const Place&)>>> rules_;
 };
 
 // ---- simple types ----
@@ -282,7 +286,8 @@ struct Codec<std::optional<T>> {
     out.reset();
     if (!limits.word.empty() && place.value == limits.word) return;
     if (!limits.word.empty() && place.value.is_string())
-      return place.problem("expected \"" + limits.word + "\" or a value, found " + shown(place.value));
+      return place.problem("expected \"" + limits.word + "\" or " + (std::is_arithmetic_v<T> ? "a number" : "its own values") + ", found " +
+                           shown(place.value));
     Codec<T>::read(out.emplace(), place, limits);
   }
   static Json write(const std::optional<T>& in, const Limits& limits) {

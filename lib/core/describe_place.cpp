@@ -13,6 +13,9 @@ bool Reader::troubled(const std::string& pointer) const {
   });
 }
 
+bool Place::sound(const std::vector<std::string>& names) const {
+  return std::none_of(names.begin(), names.end(), [this](const std::string& name) { return reader.troubled(join(pointer, name)); });
+}
 Place Place::key(const std::string& name) const { return {value.at(name), join(pointer, name), reader}; }
 Place Place::item(std::size_t index) const { return {value.at(index), join(pointer, std::to_string(index)), reader}; }
 void Place::problem(const std::string& name, const std::string& message) const { reader.problem(join(pointer, name), message); }

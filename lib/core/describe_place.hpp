@@ -34,6 +34,8 @@ struct Place {
   Reader& reader;
 
   bool given(const std::string& name) const { return value.is_object() && value.contains(name); }
+  /// Whether nothing was reported at or below these keys.
+  bool sound(const std::vector<std::string>& names) const;
   Place key(const std::string& name) const;
   Place item(std::size_t index) const;
   void problem(const std::string& message) const { reader.problem(pointer, message); }

@@ -64,16 +64,17 @@ void Description<T>::read(T& out, const Place& place, const std::string& tag) co
                          std::to_string(place.reader.dimension()) + "D: choose another");
   if (!check_object(place)) return;
   read_keys(out, place);
-  if (!place.reader.troubled(place.pointer)) check_together(out, place);
+  check_together(out, place);
   check_keys(place, names(tag));
 }
 
 template <class T>
 void Description<T>::check_together(const T& out, const Place& place) const {
   for (const Key<T>& key : keys_)
-    if (key.matters && place.given(key.name) && !key.matters(out))
+    if (key.matters && place.given(key.name) && place.sound(key.matters_by) && !key.matters(out))
       place.problem(key.name, "has no effect here, only with " + key.condition + "; remove it");
-  for (const auto& rule : rules_) rule(out, place);
+  for (const auto& [by, rule] : rules_)
+    if (place.sound(by)) rule(out, place);
 }
 
 template <class T>

@@ -19,7 +19,10 @@ void check_reference(const std::string& name, const std::vector<std::string>& na
 
 namespace {
 
-bool sound(const Place& root, const std::string& pointer) { return !root.reader.troubled(pointer); }
+/// Whether a value is there and was read without a problem.
+bool sound(const Place& root, const std::string& pointer) {
+  return root.value.contains(described::Json::json_pointer(pointer)) && !root.reader.troubled(pointer);
+}
 
 std::string item(const std::string& list, std::size_t index) { return join("/" + list, std::to_string(index)); }
 
@@ -40,7 +43,7 @@ void check_materials(const Deck& deck, const Place& root) {
     const std::string pointer = join(item("bodies", i), "material");
     used.insert(deck.bodies[i].material);
     all_read = all_read && sound(root, pointer);
-    if (sound(root, pointer) && sound(root, item("bodies", i)))
+    if (sound(root, pointer))
       check_reference(deck.bodies[i].material, names_in(deck.materials), "material", root.key("bodies").item(i).key("material"));
   }
   for (const auto& [name, material] : deck.materials)
@@ -57,7 +60,7 @@ void check_initial_stress(const Deck& deck, const Place& root) {
   for (std::size_t i = 0; i < deck.bodies.size(); ++i) {
     const Body& body = deck.bodies[i];
     const std::string pointer = join(item("bodies", i), "initial_stress");
-    if (body.initial_stress.kind == Kind::none || !sound(root, item("bodies", i)) || !sound(root, "/gravity")) continue;
+    if (body.initial_stress.kind == Kind::none || !sound(root, pointer) || !sound(root, "/gravity")) continue;
     if (std::all_of(deck.gravity.begin(), deck.gravity.end(), [](double g) { return g == 0; }))
       root.reader.problem(pointer, "has no effect without gravity; remove it");
     else if (!along_an_axis(deck.gravity) && !body.initial_stress.surface)

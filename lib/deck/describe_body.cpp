@@ -36,7 +36,7 @@ void describe(Description<Mlp>& d) {
       .otherwise("1 for each input", [](Mlp& mlp, const described::Reader&) { mlp.input_scale.assign(mlp.inputs.size(), 1.0); })
       .help("Factor on each input.");
   d.optional("output_scale", &Mlp::output_scale).unit("m/s").help("Factor on the output.");
-  d.check([](const Mlp& mlp, const described::Place& place) {
+  d.check({"inputs", "input_scale"}, [](const Mlp& mlp, const described::Place& place) {
     if (mlp.input_scale.size() != mlp.inputs.size())
       place.problem("input_scale", "must have one number for each of inputs, " + std::to_string(mlp.inputs.size()) + ", found " +
                                        std::to_string(mlp.input_scale.size()));
@@ -74,7 +74,8 @@ void describe(Description<Body>& d) {
   d.optional("particles_per_cell", &Body::particles_per_cell)
       .from(1)
       .to(4096)
-      .when([](const Body& body) { return !body.spacing; }, "no spacing given")
+      .when(
+          {"spacing"}, [](const Body& body) { return !body.spacing; }, "no spacing given")
       .otherwise("4 in 2D, 8 in 3D",
                  [](Body& body, const described::Reader& reader) {
                    if (!body.spacing) body.particles_per_cell = 1 << reader.dimension();
@@ -100,9 +101,9 @@ void describe(Description<Body>& d) {
           "= ν/(1 − ν); "
           "or an object with `kind` or `k0`, and `surface`. Gravity must be along an axis or `surface` given.");
   d.optional("jitter", &Body::jitter).word("none").help("Random displacement of the particles.");
-  d.check([](const Body& body, const described::Place& place) { described::check_name(body.name, place.key("name")); });
-  d.check(check_particles_per_cell);
-  d.check(check_initial_stress_surface);
+  d.check({"name"}, [](const Body& body, const described::Place& place) { described::check_name(body.name, place.key("name")); });
+  d.check({"particles_per_cell"}, check_particles_per_cell);
+  d.check({"initial_stress"}, check_initial_stress_surface);
 }
 
 }  // namespace jaxmpm::deck

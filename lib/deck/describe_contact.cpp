@@ -28,18 +28,23 @@ void describe(Description<Wall>& d) {
       .help("slip: no flow through it, both ways; no_slip: at rest; separate and friction: only where the material presses on it.");
   d.optional("coefficient", &Wall::coefficient)
       .from(0)
-      .when([](const Wall& wall) { return wall.kind == ContactKind::friction && wall.segments.empty(); },
-            "kind \"friction\" and no segments")
+      .when(
+          {"kind", "segments"}, [](const Wall& wall) { return wall.kind == ContactKind::friction && wall.segments.empty(); },
+          "kind \"friction\" and no segments")
       .otherwise("required unless segments are given")
       .help("Coulomb friction μ; 0 is separate.");
   d.optional("segments", &Wall::segments)
       .items(1)
-      .when([](const Wall& wall) { return wall.kind == ContactKind::friction && !wall.segments.empty(); }, "kind \"friction\"")
+      .when(
+          {"kind", "segments"}, [](const Wall& wall) { return wall.kind == ContactKind::friction && !wall.segments.empty(); },
+          "kind \"friction\"")
       .otherwise("one coefficient for the whole wall")
       .help("Friction by stretches, in increasing order; the last ends at the domain's maximum.");
-  d.check([](const Wall& wall, const described::Place& place) {
+  d.check({"kind"}, [](const Wall& wall, const described::Place& place) {
     if (wall.kind == ContactKind::friction && !place.given("coefficient") && !place.given("segments"))
       place.problem("coefficient", "is missing: kind \"friction\" needs it, or segments");
+  });
+  d.check({"segments"}, [](const Wall& wall, const described::Place& place) {
     for (std::size_t i = 1; i < wall.segments.size(); ++i)
       if (!(wall.segments[i].to > wall.segments[i - 1].to))
         place.key("segments")
@@ -56,11 +61,13 @@ void describe(Description<Obstacle>& d) {
   d.optional("kind", &Obstacle::kind).help("As for walls.");
   d.optional("coefficient", &Obstacle::coefficient)
       .from(0)
-      .when([](const Obstacle& obstacle) { return obstacle.kind == ContactKind::friction; }, "kind \"friction\"")
+      .when(
+          {"kind"}, [](const Obstacle& obstacle) { return obstacle.kind == ContactKind::friction; }, "kind \"friction\"")
       .otherwise("required with kind \"friction\"")
       .help("Coulomb friction μ.");
-  d.check([](const Obstacle& obstacle, const described::Place& place) {
-    described::check_name(obstacle.name, place.key("name"));
+  d.check({"name"},
+          [](const Obstacle& obstacle, const described::Place& place) { described::check_name(obstacle.name, place.key("name")); });
+  d.check({"kind"}, [](const Obstacle& obstacle, const described::Place& place) {
     if (obstacle.kind == ContactKind::friction && !place.given("coefficient"))
       place.problem("coefficient", "is missing: kind \"friction\" needs it");
   });

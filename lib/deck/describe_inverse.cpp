@@ -51,7 +51,7 @@ void describe_observed(Description<T>& d) {
   d.optional("weight", own(&Observed::weight)).above(0).help("In the loss.");
   d.optional("noise", own(&Observed::noise)).word("none").help("Added to the observed values.");
   d.optional("mask", own(&Observed::mask)).help("What counts: \"none\", the name of a CSV column, or a box.");
-  d.check([](const T& o, const Place& place) {
+  d.check({"from_time", "to_time"}, [](const T& o, const Place& place) {
     if (o.from_time && o.to_time && *o.from_time > *o.to_time) place.problem("to_time", "must not be before from_time");
   });
 }
@@ -86,11 +86,11 @@ void describe(Description<Unknown>& d) {
   d.optional("transform", &Unknown::transform).help("The optimiser works on the number, its logarithm, or its logit within the bounds.");
   d.optional("share", &Unknown::share).help("One value for all pointers.");
   d.optional("prior", &Unknown::prior).word("none");
-  d.check([](const Unknown& u, const Place& place) {
+  d.check({"path"}, [](const Unknown& u, const Place& place) {
     if (u.path[0] != '/') place.problem("path", "a JSON pointer starts with /");
   });
-  d.check(check_bounds);
-  d.check(check_start);
+  d.check({"bounds", "transform"}, check_bounds);
+  d.check({"start", "bounds", "transform"}, check_start);
 }
 
 void describe(Description<RandomSelection>& d) {
@@ -149,7 +149,7 @@ void describe(Description<Inverse>& d) {
   d.required("observations", &Inverse::observations).items(1);
   d.optional("optimizer", &Inverse::optimizer).help("Chosen by `method`.");
   d.optional("memory", &Inverse::memory).help("For checkpoints of the gradient: a number and MiB, GiB or TiB.");
-  d.check(check_memory);
+  d.check({"memory"}, check_memory);
 }
 
 namespace {

@@ -81,9 +81,9 @@ void describe(Description<DruckerPrager>& d) {
       .unit("Pa")
       .from(0)
       .help("Largest mean tension, at most that of the cone's apex.");
-  d.check(check_elastic_constants);
-  d.check(check_cutoff);
-  d.check([](const DruckerPrager& m, const described::Place& place) {
+  d.check({"bulk_modulus", "youngs_modulus", "poisson_ratio"}, check_elastic_constants);
+  d.check({"friction_angle", "cohesion", "tension_cutoff"}, check_cutoff);
+  d.check({"friction_angle", "dilation_angle"}, [](const DruckerPrager& m, const described::Place& place) {
     if (m.dilation_angle > m.friction_angle)
       place.problem("dilation_angle",
                     "must be at most friction_angle, " + described::shown_number(m.friction_angle) + "°: flow would create energy");

@@ -50,7 +50,7 @@ void describe(Description<Domain>& d) {
   d.required("min", &Domain::min).unit("m").items(2, 3).help("Lower corner.");
   d.required("max", &Domain::max).unit("m").items(2, 3).help("Upper corner. The extent along each axis is whole cells.");
   d.required("cell_size", &Domain::cell_size).unit("m").above(0).help("Edge of a grid cell.");
-  d.check([](const Domain& domain, const described::Place& place) {
+  d.check({"min", "max", "cell_size"}, [](const Domain& domain, const described::Place& place) {
     if (domain.min.size() != domain.max.size())
       return place.problem(
           "max", "must have as many numbers as min, " + std::to_string(domain.min.size()) + ", found " + std::to_string(domain.max.size()));
@@ -69,9 +69,10 @@ void describe(Description<Time>& d) {
   d.optional("cfl", &Time::cfl)
       .above(0)
       .to(1)
-      .when([](const Time& time) { return !time.step; }, "an automatic step")
+      .when(
+          {"step"}, [](const Time& time) { return !time.step; }, "an automatic step")
       .help("Part of a cell that the fastest wave may cross in one step.");
-  d.check([](const Time& time, const described::Place& place) {
+  d.check({"step", "end"}, [](const Time& time, const described::Place& place) {
     if (time.step && *time.step > time.end)
       place.problem("step", "is longer than the run, " + described::shown_number(time.end) + " s; make it shorter");
   });
@@ -83,13 +84,14 @@ void describe(Description<Method>& d) {
   d.optional("flip_fraction", &Method::flip_fraction)
       .from(0)
       .to(1)
-      .when([](const Method& method) { return method.transfer == Transfer::flip; }, "transfer \"flip\"")
+      .when(
+          {"transfer"}, [](const Method& method) { return method.transfer == Transfer::flip; }, "transfer \"flip\"")
       .help("Part of the velocity that is carried on by its change (FLIP); the rest is interpolated (PIC).");
   d.optional("basis", &Method::basis).help("B-splines of the grid.");
   d.optional("gradient", &Method::gradient)
       .help("Velocity gradient and internal force from the spline's gradient, or by moving least squares.");
   d.optional("precision", &Method::precision).help("Of particle and grid fields; positions are double always.");
-  d.check([](const Method& method, const described::Place& place) {
+  d.check({"basis", "gradient"}, [](const Method& method, const described::Place& place) {
     if (method.basis == Basis::linear && method.gradient == GradientForm::mls)
       place.problem("gradient", "\"mls\" is singular with the linear basis; use \"spline\", or basis \"quadratic\" or \"cubic\"");
   });

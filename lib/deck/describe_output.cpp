@@ -20,7 +20,8 @@ void describe(Description<FrontGauge>& d) {
   d.optional("quantile", &FrontGauge::quantile)
       .above(0)
       .below(1)
-      .when([](const FrontGauge& g) { return !g.depth; }, "no depth given")
+      .when(
+          {"depth"}, [](const FrontGauge& g) { return !g.depth; }, "no depth given")
       .otherwise("0.995",
                  [](FrontGauge& g, const described::Reader&) {
                    if (!g.depth) g.quantile = 0.995;
@@ -40,10 +41,11 @@ void describe(Description<FrontGauge>& d) {
   d.optional("center", &FrontGauge::center)
       .unit("m")
       .plan_vector()
-      .when([](const FrontGauge& g) { return g.axis == "radius"; }, "axis \"radius\"")
+      .when(
+          {"axis"}, [](const FrontGauge& g) { return g.axis == "radius"; }, "axis \"radius\"")
       .otherwise("required with axis \"radius\"")
       .help("Horizontal coordinates of the axis of the radius.");
-  d.check([](const FrontGauge& g, const described::Place& place) {
+  d.check({"axis", "center"}, [](const FrontGauge& g, const described::Place& place) {
     if (g.axis == "radius" && !place.given("center")) place.problem("center", "is missing: axis \"radius\" needs it");
     if (g.axis == "z" && place.reader.dimension() == 2) place.problem("axis", "there is no z in a 2D domain; choose x, y or radius");
   });
@@ -55,7 +57,7 @@ void describe(Description<RegionMeanGauge>& d) {
       .choices({"position", "velocity", "density", "pressure", "stress", "velocity_gradient", "plastic_strain"});
   d.required("min", &RegionMeanGauge::min).unit("m").vector().help("Lower corner of the box.");
   d.required("max", &RegionMeanGauge::max).unit("m").vector().help("Upper corner of the box.");
-  d.check([](const RegionMeanGauge& g, const described::Place& place) {
+  d.check({"min", "max"}, [](const RegionMeanGauge& g, const described::Place& place) {
     for (std::size_t i = 0; i < g.min.size() && i < g.max.size(); ++i)
       if (!(g.max[i] > g.min[i]))
         place.key("max").item(i).problem("must be above the same number of min, " + described::shown_number(g.min[i]));
@@ -76,15 +78,17 @@ void describe(Description<ForceGauge>& d) {
   d.is("force", "Force of the material on an obstacle or a wall; give one of them.", family);
   d.optional("obstacle", &ForceGauge::obstacle)
       .items(1)
-      .when([](const ForceGauge& g) { return !g.obstacle.empty(); }, "an obstacle")
+      .when(
+          {"obstacle"}, [](const ForceGauge& g) { return !g.obstacle.empty(); }, "an obstacle")
       .otherwise("none")
       .help("Name of an obstacle.");
   d.optional("wall", &ForceGauge::wall)
       .choices(face_names(3))
-      .when([](const ForceGauge& g) { return !g.wall.empty(); }, "a wall")
+      .when(
+          {"wall"}, [](const ForceGauge& g) { return !g.wall.empty(); }, "a wall")
       .otherwise("none")
       .help("Face of the domain.");
-  d.check([](const ForceGauge& g, const described::Place& place) {
+  d.check({"obstacle", "wall"}, [](const ForceGauge& g, const described::Place& place) {
     if (g.obstacle.empty() == g.wall.empty()) place.problem("give exactly one of obstacle and wall");
     if (place.reader.dimension() == 2 && g.wall.rfind('z', 0) == 0)
       place.problem("wall", "there is no z in a 2D domain; choose one of: " + described::listed(face_names(2)));

@@ -18,7 +18,7 @@ void describe(Description<Box>& d) {
   d.is("box", "A box along the axes.", family);
   d.required("min", &Box::min).unit("m").vector().help("Lower corner.");
   d.required("max", &Box::max).unit("m").vector().help("Upper corner.");
-  d.check([](const Box& box, const described::Place& place) {
+  d.check({"min", "max"}, [](const Box& box, const described::Place& place) {
     for (std::size_t i = 0; i < box.min.size() && i < box.max.size(); ++i)
       if (!(box.max[i] > box.min[i]))
         place.key("max").item(i).problem("must be above the same number of min, " + described::shown_number(box.min[i]));
@@ -37,7 +37,7 @@ void describe(Description<Cylinder>& d) {
   d.required("from", &Cylinder::from).unit("m").vector().help("Centre of one end.");
   d.required("to", &Cylinder::to).unit("m").vector().help("Centre of the other end.");
   d.required("radius", &Cylinder::radius).unit("m").above(0);
-  d.check([](const Cylinder& c, const described::Place& place) {
+  d.check({"from", "to"}, [](const Cylinder& c, const described::Place& place) {
     if (c.from == c.to) place.problem("to", "must differ from \"from\": the cylinder has no length");
   });
 }

@@ -80,11 +80,13 @@ class Builder : public nlohmann::json_sax<Json> {
   }
 
   bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception& error) override {
-    std::string message = error.what();
-    if (const auto end = message.find("] "); end != std::string::npos) message.erase(0, end + 2);
-    if (message.find("out_of_range") != std::string::npos || error.id == 406)
-      message += "; such a number is no quantity of a scene, correct it";
-    else message = "not valid JSON: " + message + "; correct the text at this line";
+    std::string message = error.what();  // "[json.exception.… ] parse error at line 3, column 11: …"
+    for (const char* lead : {"] ", "parse error at line "})
+      if (const auto end = message.find(lead); end != std::string::npos) message.erase(0, end + std::string(lead).size());
+    if (const auto column = message.find("column "); column != std::string::npos) message.erase(0, column);
+    constexpr int number_overflow = 406;
+    if (error.id == number_overflow) message += ": no quantity of a scene is so large; correct it";
+    else message = "not valid JSON: " + message + "; correct the text here (NaN and Infinity are no JSON)";
     syntax = Problem{pointer(), progress_.line, message};
     return false;
   }
