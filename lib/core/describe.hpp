@@ -56,7 +56,7 @@ using EnumNames = std::vector<std::pair<E, std::string>>;
 template <class T>
 struct Key {
   std::string name, text, condition, default_text;
-  bool required = false;
+  bool required = false, empty_is_absent = false;
   Limits limits;
   std::function<void(T&, const Place&, const Limits&)> read;
   std::function<Json(const T&, const Limits&)> write;  // discarded: nothing to write
@@ -121,6 +121,11 @@ struct Key {
     matters_by = std::move(by);
     matters = std::move(holds);
     condition = std::move(words);
+    return *this;
+  }
+  /// An empty string or list stands for a key that was not given, and is not written.
+  Key& absent_when_empty() {
+    empty_is_absent = true;
     return *this;
   }
   /// A default that depends on other keys or on the dimension; `words` says it in the reference. Without a function somebody above fills it

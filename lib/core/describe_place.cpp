@@ -69,6 +69,10 @@ std::string suggestion(const std::string& given, const std::vector<std::string>&
   return "; did you mean \"" + *nearest + "\"?";
 }
 
-std::string shown_number(double value) { return Json(value).dump(); }
+std::string shown_number(double value) {
+  std::string text = Json(value).dump();
+  if (text.size() > 2 && text.compare(text.size() - 2, 2, ".0") == 0) text.erase(text.size() - 2);
+  return text;
+}
 
 }  // namespace jaxmpm::described

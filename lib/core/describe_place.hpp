@@ -51,7 +51,7 @@ std::string shown(const Json& value);
 std::string listed(const std::vector<std::string>& words);
 /// "; did you mean \"cell_size\"?" for the nearest of `words`, or nothing where none is near (Levenshtein distance).
 std::string suggestion(const std::string& given, const std::vector<std::string>& words);
-/// A number as a message shows it: shortest digits that read back the same.
+/// A number as a message shows it: the fewest digits that read back the same, without a ".0" at the end.
 std::string shown_number(double value);
 
 }  // namespace jaxmpm::described

@@ -6,7 +6,12 @@
 namespace jaxmpm::described {
 namespace {
 
-std::string quoted(const Json& value) { return "`" + (value.is_string() ? "\"" + value.get<std::string>() + "\"" : value.dump()) + "`"; }
+std::string quoted(const Json& value) {
+  return "`" +
+         (value.is_string() ? "\"" + value.get<std::string>() + "\""
+                            : (value.is_number() ? shown_number(value.get<double>()) : value.dump())) +
+         "`";
+}
 
 std::string joined(const Json& list, const char* separator, std::string (*text)(const Json&)) {
   std::string out;
@@ -20,6 +25,7 @@ std::string anchor(std::string name) {
 }
 
 std::string type_text(const Json& type);
+std::string plural(const Json& type);
 
 std::string object_text(const Json& type) {
   if (type.contains("properties") && type["properties"].size() == 1) {
@@ -46,7 +52,7 @@ std::string range_text(const Json& type) {
   std::string text;
   for (const auto& [key, words] :
        {std::pair{"exclusiveMinimum", "> "}, std::pair{"minimum", "≥ "}, std::pair{"exclusiveMaximum", "< "}, std::pair{"maximum", "≤ "}})
-    if (type.contains(key)) text += (text.empty() ? " " : ", ") + std::string(words) + type[key].dump();
+    if (type.contains(key)) text += (text.empty() ? " " : ", ") + std::string(words) + shown_number(type[key].get<double>());
   return text;
 }
 
@@ -60,9 +66,16 @@ std::string type_text(const Json& type) {
   for (const char* forms : {"oneOf", "anyOf"})
     if (type.contains(forms)) return joined(type[forms], " or ", type_text);
   const std::string kind = type["type"];
-  if (kind == "array") return "list of " + type_text(type["items"]) + count_text(type);
+  if (kind == "array") return "list of " + plural(type["items"]) + count_text(type);
   if (kind == "object") return object_text(type);
   return (kind == "integer" ? "whole number" : kind == "boolean" ? "true or false" : kind) + range_text(type);
+}
+
+std::string plural(const Json& type) {
+  const std::string text = type_text(type);
+  for (const std::string word : {"whole number", "number", "string"})
+    if (text.compare(0, word.size(), word) == 0) return word + "s" + text.substr(word.size());
+  return text;
 }
 
 std::string default_text(const Json& type, bool required) {
@@ -99,7 +112,8 @@ std::string forms(const Json& type) {
 
 std::string reference_markdown(const Json& schema) {
   std::string text =
-      "# Reference of the deck\n\nWritten by `jaxmpm schema --markdown` from the descriptions that the reader itself uses; do not edit.\n";
+      "# Reference of the deck\n\nGenerated from the descriptions that the reader itself uses (lib/deck/describe_*.cpp); a test keeps it "
+      "up to date.\n";
   for (const auto& [name, type] : schema["$defs"].items()) {
     text += "\n## " + name + "\n\n";
     if (type.contains("description"))

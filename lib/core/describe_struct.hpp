@@ -84,7 +84,7 @@ Json Description<T>::write(const T& in, const std::string& tag) const {
   for (const Key<T>& key : keys_) {
     if (key.matters && !key.matters(in)) continue;
     Json value = key.write(in, key.limits);
-    if (!value.is_discarded()) object[key.name] = std::move(value);
+    if (!value.is_discarded() && !(key.empty_is_absent && (value.empty() || value == ""))) object[key.name] = std::move(value);
   }
   return object;
 }

@@ -35,9 +35,9 @@ void describe(Description<Wall>& d) {
       .help("Coulomb friction μ; 0 is separate.");
   d.optional("segments", &Wall::segments)
       .items(1)
+      .absent_when_empty()
       .when(
-          {"kind", "segments"}, [](const Wall& wall) { return wall.kind == ContactKind::friction && !wall.segments.empty(); },
-          "kind \"friction\"")
+          {"kind"}, [](const Wall& wall) { return wall.kind == ContactKind::friction; }, "kind \"friction\"")
       .otherwise("one coefficient for the whole wall")
       .help("Friction by stretches, in increasing order; the last ends at the domain's maximum.");
   d.check({"kind"}, [](const Wall& wall, const described::Place& place) {

@@ -15,7 +15,7 @@ void describe(Description<Deck>& d) {
   d.required("domain", &Deck::domain);
   d.required("gravity", &Deck::gravity).unit("m/s²").vector().help("Any axis may be up.");
   d.required("time", &Deck::time);
-  d.optional("method", &Deck::method);
+  d.optional("method", &Deck::method).otherwise("its own defaults");
   d.optional("parameters", &Deck::parameters).help("Names for expressions; they may be unknowns of an inverse problem.");
   d.required("materials", &Deck::materials).items(1).help("By name.");
   d.required("bodies", &Deck::bodies).items(1);

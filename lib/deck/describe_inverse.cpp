@@ -1,5 +1,5 @@
 // Unknowns, observations, optimisers.
-#include <cstdlib>
+#include <regex>
 
 #include "deck/inverse.hpp"
 
@@ -63,10 +63,8 @@ void describe_stopping(Description<T>& d) {
 }
 
 void check_memory(const Inverse& inverse, const Place& place) {
-  char* unit = nullptr;
-  const double amount = std::strtod(inverse.memory.c_str(), &unit);
-  const std::string name = unit;
-  if (!(amount > 0) || (name != " MiB" && name != " GiB" && name != " TiB"))
+  static const std::regex pattern("[0-9]{1,9}(\\.[0-9]{1,9})? ?(MiB|GiB|TiB)");
+  if (!std::regex_match(inverse.memory, pattern))
     place.problem("memory", "expected an amount such as \"4 GiB\" (MiB, GiB or TiB), found \"" + inverse.memory + "\"");
 }
 
@@ -147,7 +145,7 @@ void describe(Description<Inverse>& d) {
   d.is("inverse", "Unknowns of the deck and the observations they are to explain.");
   d.required("unknowns", &Inverse::unknowns).items(1);
   d.required("observations", &Inverse::observations).items(1);
-  d.optional("optimizer", &Inverse::optimizer).help("Chosen by `method`.");
+  d.optional("optimizer", &Inverse::optimizer).otherwise("adam with its own defaults").help("Chosen by `method`.");
   d.optional("memory", &Inverse::memory).help("For checkpoints of the gradient: a number and MiB, GiB or TiB.");
   d.check({"memory"}, check_memory);
 }
