@@ -1,7 +1,7 @@
 #pragma once
 // The contract of a material. A material is a plain struct with a few templated calls; it is evaluated with float, double, packs of lanes
 // (core/pack.hpp) and dual numbers (core/dual.hpp), on host and device. So no branches on values: use select(condition, a, b), max(a, b),
-// min(a, b), sqrt, log, called unqualified. A new material is one file, one line in registry.hpp and one test (docs/adding-a-material.md).
+// min(a, b), sqrt, log, called unqualified. A new material is one file, one line in registry.hpp and one test (docs/materials-howto.md).
 //
 //   template <class Scalar>                       // scalar of the parameters: the step's precision, double or a dual number
 //   struct SomeLaw {
