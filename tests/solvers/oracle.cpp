@@ -1,0 +1,137 @@
+// The fast step against the reference step, from the same state, for every combination of scheme, material and wall.
+#include <catch2/catch.hpp>
+#include <cstring>
+#include <map>
+
+#include "reference/step.hpp"
+#include "scenes.hpp"
+#include "solvers/solver.hpp"
+
+using namespace jaxmpm;
+
+namespace {
+
+/// Arrays of a checkpoint as doubles, by name.
+using Arrays = std::map<std::string, std::vector<double>>;
+
+template <class T>
+std::vector<double> as_doubles(const RawArray& array) {
+  std::vector<T> values(array.bytes.size() / sizeof(T));
+  std::memcpy(values.data(), array.bytes.data(), array.bytes.size());
+  return {values.begin(), values.end()};
+}
+
+Arrays arrays_of(const Solver& solver) {
+  Arrays all;
+  for (const RawArray& a : solver.save())
+    all[a.name] = a.type == "f4" ? as_doubles<float>(a) : (a.type == "f8" ? as_doubles<double>(a) : (a.type == "u4" ? as_doubles<std::uint32_t>(a) : as_doubles<long>(a)));
+  return all;
+}
+
+/// The reference state with the particles of the fast one, in its storage order.
+ReferenceState<double> state_of(const Model& model, const Arrays& arrays) {
+  ReferenceState<double> state = reference_state<double>(model);
+  for (std::size_t b = 0; b < state.bodies.size(); ++b) {
+    const std::string body = "body" + std::to_string(b) + "_";
+    ReferenceBody<double>& r = state.bodies[b];
+    r.mass = arrays.at(body + "mass"), r.compression = arrays.at(body + "compression");
+    for (std::size_t a = 0; a < r.mass.size(); ++a) {
+      for (std::size_t d = 0; d < std::size_t(model.dim); ++d) {
+        r.position[a][d] = arrays.at(body + "position_" + std::to_string(d))[a];
+        r.velocity[a][d] = arrays.at(body + "velocity_" + std::to_string(d))[a];
+        for (std::size_t k = 0; k < std::size_t(model.dim); ++k) {
+          const auto affine = arrays.find(body + "affine_" + std::to_string(d * std::size_t(model.dim) + k));
+          r.affine[a][d][k] = affine == arrays.end() ? 0.0 : affine->second[a];
+        }
+      }
+      for (std::size_t k = 0; k < r.history[a].size(); ++k) r.history[a][k] = arrays.at(body + "history_" + std::to_string(k))[a];
+    }
+  }
+  return state;
+}
+
+/// Largest difference of a field over its largest value.
+struct Difference {
+  double difference = 0, largest = 0;
+  void add(double a, double b) {
+    if (!(std::abs(a - b) <= difference)) difference = std::abs(a - b);
+    largest = std::max(largest, std::abs(b));
+  }
+  double relative() const { return largest > 0 ? difference / largest : difference; }
+};
+
+/// Differences of every field after one more step of both.
+std::map<std::string, Difference> compare(const Model& model, Solver& solver, double dt) {
+  ReferenceState<double> state = state_of(model, arrays_of(solver));
+  const Arrays before = arrays_of(solver);
+  solver.step(dt);
+  reference_step(model, state, dt);
+  const Arrays after = arrays_of(solver);
+  std::map<std::string, Difference> found;
+  for (std::size_t b = 0; b < state.bodies.size(); ++b) {
+    const std::string body = "body" + std::to_string(b) + "_";
+    REQUIRE(before.at(body + "id") == after.at(body + "id"));  // no sort in between
+    const ReferenceBody<double>& r = state.bodies[b];
+    const auto fast = [&](const std::string& name, std::size_t k, std::size_t a) { return after.at(body + name + "_" + std::to_string(k))[a]; };
+    for (std::size_t a = 0; a < r.mass.size(); ++a) {
+      found[body + "compression"].add(after.at(body + "compression")[a], r.compression[a]);
+      for (std::size_t d = 0; d < std::size_t(model.dim); ++d) {
+        found["position"].add(fast("position", d, a), r.position[a][d]);
+        found["velocity"].add(fast("velocity", d, a), r.velocity[a][d]);
+        for (std::size_t k = 0; k < std::size_t(model.dim); ++k)
+          if (after.count(body + "affine_0")) found["affine"].add(fast("affine", d * std::size_t(model.dim) + k, a), r.affine[a][d][k]);
+      }
+      for (std::size_t k = 0; k < r.history[a].size(); ++k) {
+        const bool strain = r.history[a].size() % 2 == 1 && k + 1 == r.history[a].size() && r.history[a].size() != 9;  // stress and plastic strain
+        found[body + (strain ? "plastic_strain" : "history")].add(fast("history", k, a), r.history[a][k]);
+      }
+    }
+  }
+  return found;
+}
+
+void check_step(const Model& model, double dt) {
+  const auto solver = make_solver(model, Backend::cpu);
+  for (int warm_up = 0; warm_up < 3; ++warm_up) solver->step(dt);
+  const double tolerance = model.method.precision == deck::Precision::f64 ? 1e-12 : 2e-5;
+  for (const auto& [field, difference] : compare(model, *solver, dt)) {
+    INFO("field " << field << ", largest " << difference.largest);
+    CHECK(difference.relative() < tolerance);
+  }
+}
+
+deck::LinearElastic elastic() {
+  deck::LinearElastic m;
+  m.density = 1500, m.youngs_modulus = 1e5, m.poisson_ratio = 0.3;
+  return m;
+}
+deck::NeoHookean rubber() {
+  deck::NeoHookean m;
+  m.density = 1100, m.youngs_modulus = 1e5, m.poisson_ratio = 0.4;
+  return m;
+}
+
+}  // namespace
+
+TEST_CASE("the fast step matches the reference step for every scheme") {
+  const int dim = GENERATE(2, 3);
+  deck::Method method;
+  method.precision = GENERATE(deck::Precision::f64, deck::Precision::f32);
+  method.transfer = GENERATE(deck::Transfer::pic, deck::Transfer::flip, deck::Transfer::apic, deck::Transfer::tpic);
+  method.basis = GENERATE(deck::Basis::linear, deck::Basis::quadratic, deck::Basis::cubic);
+  method.gradient = GENERATE(deck::GradientForm::spline, deck::GradientForm::mls);
+  if (method.basis == deck::Basis::linear && method.gradient == deck::GradientForm::mls) return;
+  CAPTURE(dim, int(method.precision), int(method.transfer), int(method.basis), int(method.gradient));
+  check_step(busy_scene(dim, method, water(2.0), sand(), deck::ContactKind::friction), 1e-4);
+}
+
+TEST_CASE("the fast step matches the reference step for every material and wall") {
+  const int dim = GENERATE(2, 3);
+  deck::Method method;
+  method.precision = GENERATE(deck::Precision::f64, deck::Precision::f32);
+  method.transfer = GENERATE(deck::Transfer::flip, deck::Transfer::apic);
+  const auto kind = GENERATE(deck::ContactKind::slip, deck::ContactKind::no_slip, deck::ContactKind::separate, deck::ContactKind::friction);
+  CAPTURE(dim, int(method.precision), int(method.transfer), int(kind));
+  check_step(busy_scene(dim, method, water(), rubber(), kind), 1e-4);
+  check_step(busy_scene(dim, method, sand(), elastic(), kind), 1e-4);
+}
