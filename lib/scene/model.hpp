@@ -15,14 +15,17 @@ namespace jaxmpm {
 using Point = std::array<double, 3>;  // z unused in 2D (zero)
 
 /// Distance and direction of an obstacle's surface: distance < 0 inside the solid; `normal` is a unit vector out of the solid.
-struct SignedDistance { double distance; Point normal; };
+struct SignedDistance {
+  double distance;
+  Point normal;
+};
 
 /// A rigid obstacle in lattice coordinates (cells from domain.min), so that nothing depends on the distance from the deck's origin.
 struct RigidObstacle {
   std::string name;
   deck::ContactKind kind = deck::ContactKind::separate;
   double coefficient = 0;
-  std::function<SignedDistance(const Point&)> signed_distance;  // argument and distance in cells
+  std::function<SignedDistance(const Point&)> signed_distance;            // argument and distance in cells
   std::function<bool(const Point& lower, const Point& upper)> may_touch;  // whether a box of cells can hold points with distance < 1 cell
 };
 
@@ -34,13 +37,14 @@ struct FaceLaw {
   int segment_axis = 0;
 };
 
-/// The particles of one body as they are seeded. Positions in cells from domain.min; ids are unique over the deck and increase with the seed lattice.
+/// The particles of one body as they are seeded. Positions in cells from domain.min; ids are unique over the deck and increase with the
+/// seed lattice.
 struct BodyState {
   std::vector<std::uint32_t> id;
-  std::vector<Point> position;      // cells
-  std::vector<Point> velocity;      // m/s
-  std::vector<double> mass;         // kg (per metre of thickness in 2D)
-  std::vector<double> compression;  // ρ/ρ0 − 1
+  std::vector<Point> position;                // cells
+  std::vector<Point> velocity;                // m/s
+  std::vector<double> mass;                   // kg (per metre of thickness in 2D)
+  std::vector<double> compression;            // ρ/ρ0 − 1
   std::vector<std::array<double, 6>> stress;  // Pa, xx yy zz xy yz xz; empty when it is none
 };
 
@@ -61,7 +65,7 @@ struct Model {
   deck::Time time;
   std::array<FaceLaw, 6> faces;
   std::vector<RigidObstacle> obstacles;
-  std::vector<Body> bodies;  // in deck order
+  std::vector<Body> bodies;               // in deck order
   bool record_velocity_gradient = false;  // some output asks for it
   bool account_energy = false;            // an energy gauge asks for dissipation
   std::vector<std::string> notices;       // what seeding wants the user to know

@@ -1,0 +1,80 @@
+#include "fields/mlp.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.hpp"
+#include "fields/random.hpp"
+
+namespace jaxmpm {
+namespace {
+
+std::size_t weight_count(const std::vector<int>& widths) {
+  std::size_t count = 0;
+  for (std::size_t l = 0; l + 1 < widths.size(); ++l) count += static_cast<std::size_t>(widths[l] + 1) * widths[l + 1];
+  return count;
+}
+
+std::vector<double> initial_weights(const std::vector<int>& widths, std::uint64_t seed) {
+  RandomStream random(seed);
+  std::vector<double> weights;
+  weights.reserve(weight_count(widths));
+  for (std::size_t l = 0; l + 1 < widths.size(); ++l) {
+    const double deviation = std::sqrt(2.0 / widths[l]);
+    for (int i = 0; i < widths[l] * widths[l + 1]; ++i) weights.push_back(deviation * random.normal());
+    weights.insert(weights.end(), widths[l + 1], 0.0);
+  }
+  return weights;
+}
+
+}  // namespace
+
+Mlp::Mlp(const deck::Mlp& description, int dim, const std::string& pointer)
+    : scale_(description.input_scale), tanh_(description.activation == "tanh"), output_scale_(description.output_scale) {
+  if (!tanh_ && description.activation != "relu")
+    throw DeckError(pointer + "/activation", "unknown activation '" + description.activation + "'; valid are relu, tanh");
+  for (std::size_t i = 0; i < description.inputs.size(); ++i) {
+    inputs_.push_back(coordinate_index(description.inputs[i], dim));
+    if (inputs_.back() < 0)
+      throw DeckError(pointer + "/inputs/" + std::to_string(i),
+                      "'" + description.inputs[i] + "' is no coordinate; valid are " + (dim == 3 ? "x, y, z" : "x, y"));
+  }
+  if (inputs_.empty()) throw DeckError(pointer + "/inputs", "a network needs at least one input coordinate");
+  if (scale_.empty()) scale_.assign(inputs_.size(), 1.0);
+  if (scale_.size() != inputs_.size())
+    throw DeckError(pointer + "/input_scale",
+                    "give one factor for each input (" + std::to_string(inputs_.size()) + "), here are " + std::to_string(scale_.size()));
+  widths_.push_back(static_cast<int>(inputs_.size()));
+  for (std::size_t i = 0; i < description.hidden.size(); ++i) {
+    if (description.hidden[i] < 1) throw DeckError(pointer + "/hidden/" + std::to_string(i), "a layer has at least one neuron");
+    widths_.push_back(description.hidden[i]);
+  }
+  widths_.push_back(1);
+  weights_ = initial_weights(widths_, description.seed);
+}
+
+double Mlp::value(const std::array<double, 3>& place) const {
+  std::vector<double> now(inputs_.size()), next;
+  for (std::size_t i = 0; i < inputs_.size(); ++i) now[i] = scale_[i] * place[inputs_[i]];
+  const double* w = weights_.data();
+  for (std::size_t l = 0; l + 1 < widths_.size(); ++l) {
+    const double* bias = w + static_cast<std::size_t>(widths_[l]) * widths_[l + 1];
+    next.assign(bias, bias + widths_[l + 1]);
+    for (double& neuron : next)
+      for (double a : now) neuron += *w++ * a;
+    w += widths_[l + 1];
+    if (l + 2 < widths_.size())
+      for (double& neuron : next) neuron = tanh_ ? std::tanh(neuron) : std::max(0.0, neuron);
+    now.swap(next);
+  }
+  return output_scale_ * now[0];
+}
+
+void Mlp::set_weights(std::vector<double> weights) {
+  if (weights.size() != weights_.size())
+    throw Error(ExitCode::deck,
+                "a network of " + std::to_string(weights_.size()) + " weights cannot take " + std::to_string(weights.size()));
+  weights_ = std::move(weights);
+}
+
+}  // namespace jaxmpm

@@ -1,0 +1,149 @@
+#include "scene/model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/error.hpp"
+#include "scene/initial_stress.hpp"
+#include "scene/initial_velocity.hpp"
+#include "scene/overburden.hpp"
+#include "scene/seeding.hpp"
+
+namespace jaxmpm {
+namespace {
+
+constexpr double kContactReach = 1;  // cells: may_touch tells of boxes that can hold places nearer to the solid than this
+
+const std::array<const char*, 6> kFaceNames{"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"};
+
+std::array<FaceLaw, 6> make_faces(const deck::Deck& deck, const Frame& frame) {
+  std::array<FaceLaw, 6> faces;
+  for (int face = 0; face < 6; ++face) {
+    FaceLaw& law = faces[face];
+    law.segment_axis = face / 2 == 0 ? 1 : 0;  // the first other axis
+    const auto wall = deck.walls.find(kFaceNames[face]);
+    if (wall == deck.walls.end()) continue;
+    law.kind = wall->second.kind;
+    if (law.kind != deck::ContactKind::friction) continue;
+    for (const deck::Segment& segment : wall->second.segments) {
+      law.to.push_back(frame.coordinate(segment.to, law.segment_axis));
+      law.coefficient.push_back(segment.coefficient);
+    }
+    if (law.coefficient.empty()) law.coefficient.push_back(wall->second.coefficient);
+  }
+  return faces;
+}
+
+std::vector<GeometryPointer> obstacle_shapes(const deck::Deck& deck, const Frame& frame) {
+  std::vector<GeometryPointer> shapes;
+  for (std::size_t i = 0; i < deck.obstacles.size(); ++i)
+    shapes.push_back(make_geometry(deck.obstacles[i].shape, frame, "/obstacles/" + std::to_string(i) + "/shape"));
+  return shapes;
+}
+
+RigidObstacle make_obstacle(const deck::Obstacle& obstacle, const GeometryPointer& shape) {
+  RigidObstacle made;
+  made.name = obstacle.name;
+  made.kind = obstacle.kind;
+  made.coefficient = obstacle.coefficient;
+  made.signed_distance = [shape](const Point& place) { return shape->signed_distance(place); };
+  made.may_touch = [shape](const Point& lower, const Point& upper) { return shape->may_reach(lower, upper, kContactReach); };
+  return made;
+}
+
+const deck::Material& material_of(const deck::Deck& deck, std::size_t body) {
+  const auto material = deck.materials.find(deck.bodies[body].material);
+  if (material == deck.materials.end())
+    throw DeckError("/bodies/" + std::to_string(body) + "/material", "there is no material '" + deck.bodies[body].material + "'");
+  return material->second;
+}
+
+/// Mass of a lattice cell at the density of the particle: its volume is that of the lattice.
+void set_masses(Body& body, double volume) {
+  const double mass = reference_density(body.material) * volume;
+  for (std::size_t p = 0; p < body.initial.mass.size(); ++p) body.initial.mass[p] = mass * (1 + body.initial.compression[p]);
+}
+
+std::vector<Body> place_bodies(const deck::Deck& deck, const Frame& frame, const SeededScene& scene,
+                               const std::vector<GeometryPointer>& obstacles) {
+  std::uint64_t total = 0;
+  for (const Seeds& seeds : scene.seeds) total += seeds.count;
+  if (total > std::numeric_limits<std::uint32_t>::max())
+    throw DeckError("/bodies",
+                    "the scene has " + std::to_string(total) + " particles, more than ids can number (4294967295); use a coarser lattice");
+  std::vector<Body> bodies;
+  std::uint32_t first_id = 0;
+  for (std::size_t i = 0; i < deck.bodies.size(); ++i) {
+    Body body{deck.bodies[i].name, material_of(deck, i), {}};
+    const std::size_t count = scene.seeds[i].count;
+    BodyState& state = body.initial;
+    state.position = seed_positions(deck.bodies[i], frame, *scene.shapes[i], scene.seeds[i], obstacles, first_id);
+    state.id.resize(count);
+    for (std::size_t p = 0; p < count; ++p) state.id[p] = first_id + static_cast<std::uint32_t>(p);
+    first_id += static_cast<std::uint32_t>(count);
+    state.velocity.assign(count, Point{});
+    state.compression.assign(count, 0.0);
+    state.mass.resize(count);
+    bodies.push_back(std::move(body));
+  }
+  return bodies;
+}
+
+std::vector<std::string> cut_notices(const deck::Deck& deck, const std::vector<Seeds>& seeds) {
+  std::vector<std::string> notices;
+  for (std::size_t i = 0; i < seeds.size(); ++i)
+    if (seeds[i].cut > 0)
+      notices.push_back("body '" + deck.bodies[i].name + "': " + std::to_string(seeds[i].cut) + " of its " +
+                        std::to_string(seeds[i].cut + seeds[i].count) + " particles lie inside an obstacle and are left out");
+  return notices;
+}
+
+bool names_velocity_gradient(const std::vector<std::string>& fields) {
+  return std::find(fields.begin(), fields.end(), "velocity_gradient") != fields.end();
+}
+
+bool asks_for_velocity_gradient(const deck::Deck& deck) {
+  if (deck.output.fields && names_velocity_gradient(*deck.output.fields)) return true;
+  return std::any_of(deck.gauges.begin(), deck.gauges.end(), [](const auto& entry) {
+    if (const auto* mean = std::get_if<deck::RegionMeanGauge>(&entry.second)) return mean->field == "velocity_gradient";
+    if (const auto* particles = std::get_if<deck::ParticlesGauge>(&entry.second)) return names_velocity_gradient(particles->fields);
+    return false;
+  });
+}
+
+bool has_energy_gauge(const deck::Deck& deck) {
+  return std::any_of(deck.gauges.begin(), deck.gauges.end(),
+                     [](const auto& entry) { return std::holds_alternative<deck::EnergyGauge>(entry.second); });
+}
+
+}  // namespace
+
+Model build_model(const deck::Deck& deck) {
+  const Frame frame = make_frame(deck);
+  Model model;
+  model.dim = frame.dim;
+  model.cells = frame.cells;
+  model.domain_min = frame.domain_min;
+  model.cell_size = frame.cell_size;
+  std::copy(deck.gravity.begin(), deck.gravity.end(), model.gravity.begin());
+  model.method = deck.method;
+  model.time = deck.time;
+  model.faces = make_faces(deck, frame);
+  const std::vector<GeometryPointer> obstacles = obstacle_shapes(deck, frame);
+  for (std::size_t i = 0; i < obstacles.size(); ++i) model.obstacles.push_back(make_obstacle(deck.obstacles[i], obstacles[i]));
+
+  const SeededScene scene = seed_bodies(deck, frame, obstacles);
+  model.bodies = place_bodies(deck, frame, scene, obstacles);
+  set_initial_stress(deck, frame, scene.seeds, model.bodies);
+  for (std::size_t i = 0; i < model.bodies.size(); ++i) {
+    set_masses(model.bodies[i], std::pow(scene.seeds[i].lattice.spacing * frame.cell_size, frame.dim));
+    set_initial_velocity(deck, frame, i, model.bodies[i].initial);
+  }
+  model.record_velocity_gradient = asks_for_velocity_gradient(deck);
+  model.account_energy = has_energy_gauge(deck);
+  model.notices = cut_notices(deck, scene.seeds);
+  return model;
+}
+
+}  // namespace jaxmpm
