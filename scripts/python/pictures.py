@@ -77,8 +77,30 @@ def draw_scene(axes, deck, deck_directory, horizontal=0, vertical=1):
             line = ([at, at], [low[other], high[other]])
             axes.plot(*(line if axis == horizontal else line[::-1]), **style, zorder=3)
     for obstacle in deck.get("obstacles", []):
+        if len(low) == 3 and (horizontal, vertical) == (0, 1):
+            draw_terrain(axes, obstacle["shape"], deck_directory)
         for points in outlines_in(obstacle["shape"], deck_directory, horizontal, vertical):
             axes.add_patch(patches.Polygon(points, closed=True, fc=(0.75, 0.75, 0.75, 1.0 if len(low) == 2 else 0.4), ec="k", lw=0.8, zorder=2))
+
+
+def draw_terrain(axes, shape, directory):
+    """Contour lines of a height map (ESRI ASCII grid) in the top view, for the eye: nothing where the file is not found."""
+    kind, data = next(iter(shape.items()))
+    path = directory / data["file"] if kind == "height_map" else None
+    if path is None or path.suffix != ".asc" or not path.is_file():
+        return
+    header = {}
+    with open(path, encoding="utf-8") as file:
+        for _ in range(6):
+            key, value = file.readline().split()
+            header[key.lower()] = float(value)
+        heights = np.loadtxt(file)[::-1] * data.get("vertical_scale", 1)
+    offset = list(np.ravel(data.get("offset") or [])) + [0.0] * 3
+    size = header["cellsize"]
+    first = [header[f"{a}llcenter"] if f"{a}llcenter" in header else header[f"{a}llcorner"] + size / 2 for a in "xy"]
+    x, y = (first[a] + offset[a] + size * np.arange(heights.shape[1 - a]) for a in (0, 1))
+    lines = axes.contour(x, y, np.where(heights == header.get("nodata_value"), np.nan, heights) + offset[2], levels=25, colors="0.5", linewidths=0.5, zorder=0)
+    axes.clabel(lines, lines.levels[::5], fontsize=6, fmt="%.0f")
 
 
 def outlines_in(shape, directory, horizontal, vertical):

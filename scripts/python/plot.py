@@ -13,6 +13,8 @@ matplotlib.use("Agg")
 import matplotlib.animation as animation  # noqa: E402
 import matplotlib.pyplot as plt  # noqa: E402
 
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+
 
 def arguments():
     parser = argparse.ArgumentParser(prog="scripts/plot", description=__doc__)
@@ -21,17 +23,11 @@ def arguments():
     parser.add_argument("--times", type=float, nargs="+", metavar="S", help="times of frames.png, s (default: four over the run)")
     parser.add_argument("--range", type=float, nargs=2, metavar=("LOW", "HIGH"), help="range of the colours (default: that of all frames)")
     parser.add_argument("--out", type=pathlib.Path, help="folder for the pictures (default: pictures/ beside the results)")
+    parser.add_argument("--deck-directory", type=pathlib.Path, default=ROOT / "inputs", help="folder of the deck, where its terrain is looked for (default: inputs/)")
     parser.add_argument("--no-animation", action="store_true", help="only the pictures")
     parser.add_argument("--animation-frames", type=int, default=80, metavar="N", help="at most so many frames in the animation")
     parser.add_argument("--fps", type=int, default=12, help="frames of the animation a second")
     return parser.parse_args()
-
-
-def deck_directory(results):
-    """Folder that relative files of the deck are looked for in, so that terrain can be drawn; where they are gone it is left out."""
-    path = results.attributes.get("deck_path", "")
-    path = path.decode() if isinstance(path, bytes) else str(path)
-    return pathlib.Path(path).parent if path else pathlib.Path(".")
 
 
 def views(results):
@@ -126,7 +122,7 @@ def main():
         sys.exit(f"{options.results} is no results file of jaxmpm: {error}")
     if not results.frames:
         sys.exit(f"{options.results} holds no frames")
-    results.deck_directory = deck_directory(results)
+    results.deck_directory = options.deck_directory
     out = options.out or results.directory / "pictures"
     out.mkdir(parents=True, exist_ok=True)
     field = options.field or "speed"
