@@ -15,6 +15,15 @@ std::string valid_names(int dim, const std::map<std::string, double>& parameters
   return names;
 }
 
+/// muparser would let a formula overwrite its variables: "=" other than in ==, !=, <= and >=.
+bool assigns(const std::string& text) {
+  for (std::size_t at = text.find('='); at != std::string::npos; at = text.find('=', at + 1)) {
+    if (at + 1 < text.size() && text[at + 1] == '=') ++at;
+    else if (at == 0 || std::string("!<>").find(text[at - 1]) == std::string::npos) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 struct Expression::Parser {
@@ -24,6 +33,10 @@ struct Expression::Parser {
 
 Expression::Expression(const std::string& text, int dim, const std::map<std::string, double>& parameters, const std::string& pointer)
     : parser_(std::make_unique<Parser>()), text_(text), pointer_(pointer) {
+  if (assigns(text)) throw DeckError(pointer, "the expression \"" + text + "\" assigns to a name; give a value, and == to compare");
+  for (const auto& parameter : parameters)
+    if (coordinate_index(parameter.first, dim) >= 0)
+      throw DeckError("/parameters/" + parameter.first, "a parameter may not be called like a coordinate; choose another name");
   std::map<std::string, double> values = parameters;
   try {
     for (int d = 0; d < dim; ++d) parser_->parser.DefineVar(std::string(1, "xyz"[d]), &parser_->place[d]);
@@ -42,6 +55,7 @@ Expression::Expression(const std::string& text, int dim, const std::map<std::str
       parser_->parser.DefineConst(parameter.first, parameter.second);
     }
     parser_->parser.Eval();
+    if (parser_->parser.GetNumResults() != 1) throw DeckError(pointer, "the expression \"" + text + "\" has several values; give one");
   } catch (const mu::Parser::exception_type& error) {
     throw DeckError(pointer, "the expression \"" + text + "\" cannot be read: " + error.GetMsg() + " Valid names are " +
                                  valid_names(dim, parameters) +
