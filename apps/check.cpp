@@ -1,0 +1,89 @@
+// jaxmpm check: everything wrong with a deck or, when nothing is, what running it will take.
+#include <chrono>
+#include <iostream>
+#include <memory>
+
+#include "commands.hpp"
+#include "core/error.hpp"
+#include "core/provenance.hpp"
+#include "core/runtime.hpp"
+#include "io/progress.hpp"
+#include "io/results_directory.hpp"
+#include "observe/gauge.hpp"
+#include "solvers/simulation.hpp"
+
+namespace jaxmpm {
+namespace {
+
+/// Mean cost of a step, s, from a few steps of a state that is thrown away.
+double measure_step(Solver& solver, const deck::Time& time) {
+  constexpr int most_steps = 50;
+  constexpr double long_enough = 2;  // s
+  const auto step = [&] { solver.step(time.step ? *time.step : solver.stable_step()); };
+  step();  // sorts, allocates
+  const auto begin = std::chrono::steady_clock::now();
+  double seconds = 0;
+  int steps = 0;
+  while (steps < most_steps && seconds < long_enough) {
+    step();
+    ++steps;
+    seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  }
+  return seconds / steps;
+}
+
+void print_bodies(const Model& model, const Solver& solver) {
+  std::cout << "particles       " << solver.particle_count() << '\n';
+  for (const Body& body : model.bodies) {
+    double mass = 0;
+    for (const double m : body.initial.mass) mass += m;
+    std::cout << "  " << body.name << ": " << body.initial.id.size() << ", " << mass << (model.dim == 2 ? " kg/m" : " kg") << '\n';
+  }
+}
+
+/// Whether a fixed step is within the limit of the first state.
+bool print_step(const Model& model, const Solver& solver) {
+  const double limit = solver.stable_step() / model.time.cfl;
+  const double dt = model.time.step ? *model.time.step : solver.stable_step();
+  std::cout << fmt::format("time step       {:.4g} s ({}; limit of the first state about {:.4g} s)\nsteps           {:.0f}{}\n", dt,
+                           model.time.step ? "fixed" : "automatic", limit, model.time.end / dt,
+                           model.time.step ? "" : " or more, as the flow gets faster");
+  return dt <= limit;
+}
+
+int check(const DeckOptions& options) {
+  const deck::Deck deck = deck::read_deck(options.deck, options.assignments);
+  const Runtime runtime(options.threads);
+  const Model model = build_model(deck);
+  const GaugeSet gauges(deck, model);
+  const auto solver = make_solver(model, options.backend ? chosen_backend(options) : Backend::cpu);
+  std::cout << options.deck << ": no errors\n";
+  print_bodies(model, *solver);
+  const bool good = print_step(model, *solver);
+  std::cout << fmt::format("memory          {:.3g} GB for particles ({:.0f} bytes each), {:.3g} GB with grid and scene\n",
+                           solver->bytes_per_particle() * static_cast<double>(solver->particle_count()) / 1e9, solver->bytes_per_particle(),
+                           peak_memory_bytes() / 1e9);
+  const double dt = model.time.step ? *model.time.step : solver->stable_step();
+  const double cost = good ? measure_step(*solver, model.time) : 0;
+  if (good)
+    std::cout << fmt::format("estimated time  {} ({:.3g} s a step on {} threads of this machine, without output)\n",
+                             duration(cost * model.time.end / dt), cost, thread_count());
+  const ResultsDirectory directory(deck.output.directory);
+  std::cout << "results         " << directory.path()
+            << (directory.holds_results() ? " (holds results: --overwrite or --resume will be needed)" : "") << '\n';
+  for (const std::string& notice : model.notices) std::cout << "note: " << notice << '\n';
+  if (good) return static_cast<int>(ExitCode::done);
+  std::cout << "VERDICT: /time/step is above the limit, so the run would become unstable. Lower it, or use \"auto\".\n";
+  return static_cast<int>(ExitCode::bad_verdict);
+}
+
+}  // namespace
+
+void add_check(CLI::App& app, Chosen& chosen) {
+  CLI::App* command = app.add_subcommand("check", "Check a deck: all errors, particles, memory, time step, estimated time");
+  auto options = std::make_shared<DeckOptions>();
+  add_deck_options(*command, *options);
+  command->callback([&chosen, options] { chosen = [options](const CommonOptions&) { return check(*options); }; });
+}
+
+}  // namespace jaxmpm

@@ -1,0 +1,20 @@
+#pragma once
+// Kokkos for as long as an object of this class lives; the one place that knows how its versions are started.
+#include <optional>
+
+namespace jaxmpm {
+
+class Runtime {
+ public:
+  /// Starts Kokkos with a number of host threads (all that the system offers when empty). Throws Error (exit 2) when the build asks for a
+  /// device and none is found.
+  explicit Runtime(std::optional<int> threads);
+  ~Runtime();
+  Runtime(const Runtime&) = delete;
+  Runtime& operator=(const Runtime&) = delete;
+};
+
+/// Host threads in use.
+int thread_count();
+
+}  // namespace jaxmpm

@@ -1,0 +1,33 @@
+#pragma once
+// DIR/checkpoint.h5: all that a run needs to go on as if it had never stopped.
+#include <optional>
+#include <string>
+
+#include "io/index.hpp"
+
+namespace jaxmpm {
+
+struct Checkpoint {
+  Moment at;
+  double seconds = 0;  // wall time in steps so far
+  std::string deck;    // resolved
+  std::string backend;
+  std::vector<FrameEntry> frames;
+  std::map<std::string, GaugeSeries> gauges;
+  std::vector<RawArray> state;
+};
+
+/// Throws NumericsError when the state is not finite (nothing is written then), IoError when it cannot be written.
+void write_checkpoint(const std::string& path, const Checkpoint& checkpoint);
+/// Throws IoError when the file is missing, damaged or no checkpoint of this format.
+Checkpoint read_checkpoint(const std::string& path);
+
+/// The newest readable checkpoint of a directory, with a warning for a damaged one; empty when there is none at all.
+/// Throws IoError when there are some but none can be read.
+std::optional<Checkpoint> newest_checkpoint(const ResultsDirectory& directory);
+
+/// Throws DeckError naming every key in which the deck differs from that of a checkpoint or of earlier results, but for those that a
+/// resumed run may change: /time/end and /output.
+void require_same_deck(const std::string& before, const std::string& now, const std::string& file);
+
+}  // namespace jaxmpm

@@ -1,0 +1,56 @@
+#include "io/progress.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <cmath>
+#include <cstdio>
+
+#include "core/logging.hpp"
+
+namespace jaxmpm {
+
+std::string duration(double seconds) {
+  if (seconds < 1) return fmt::format("{:.2g} s", seconds);
+  const auto whole = static_cast<long long>(std::llround(seconds));
+  if (whole < 60) return fmt::format("{} s", whole);
+  if (whole < 3600) return fmt::format("{} min {:02d} s", whole / 60, whole % 60);
+  return fmt::format("{} h {:02d} min", whole / 3600, whole / 60 % 60);
+}
+
+Progress::Progress(std::uint64_t particles, bool quiet) : particles_(particles), quiet_(quiet), terminal_(is_terminal()) {}
+
+Progress::~Progress() {
+  if (shown_ && terminal_) std::fputc('\n', stderr);
+}
+
+void Progress::update(const Moment& now, double end) {
+  if (quiet_) return;
+  const Clock::time_point clock = Clock::now();
+  if (!started_) {
+    started_ = true;
+    first_ = now;
+    begin_ = last_ = clock;
+    return;
+  }
+  const double interval = terminal_ ? 0.2 : 10;  // s
+  if (std::chrono::duration<double>(clock - last_).count() < interval) return;
+  last_ = clock;
+  show(now, end, std::chrono::duration<double>(clock - begin_).count());
+}
+
+void Progress::show(const Moment& now, double end, double elapsed) {
+  const double steps = static_cast<double>(now.step - first_.step), advanced = now.time - first_.time;
+  const double left = advanced > 0 ? elapsed * (end - now.time) / advanced : 0;
+  const std::string line =
+      fmt::format("{:5.1f}%  t = {:.6g} s  step {}  dt {:.3g} s  {:.3g} particle-steps/s  {} left", 100 * now.time / end, now.time,
+                  now.step, now.dt, steps * static_cast<double>(particles_) / elapsed, duration(left));
+  if (!terminal_) {
+    spdlog::info("{}", line);
+    return;
+  }
+  std::fprintf(stderr, "\r%s\033[K", line.c_str());
+  std::fflush(stderr);
+  shown_ = true;
+}
+
+}  // namespace jaxmpm

@@ -1,0 +1,77 @@
+#include "io/recorder.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "io/files.hpp"
+#include "io/vtk.hpp"
+
+namespace jaxmpm {
+
+ResultsRecorder::ResultsRecorder(const ResultsDirectory& directory, const deck::Deck& deck, const Model& model, Solver& solver,
+                                 const std::string& backend, bool quiet)
+    : directory_(directory),
+      deck_(deck),
+      model_(model),
+      solver_(solver),
+      backend_(backend),
+      gauges_(deck, model),
+      progress_(solver.particle_count(), quiet) {
+  for (const Body& body : model.bodies) {
+    layout_.push_back({body.name, written_fields(deck.output, body.material)});
+    fields_ = fields_ | selection(layout_.back().fields);
+  }
+  if (gauges_.needs_forces()) solver.record_forces(true);
+}
+
+bool ResultsRecorder::writes(const std::string& format) const {
+  return std::find(deck_.output.formats.begin(), deck_.output.formats.end(), format) != deck_.output.formats.end();
+}
+
+void ResultsRecorder::resume(const Checkpoint& from) {
+  frames_ = from.frames;
+  gauges_.restore(from.gauges);
+  directory_.drop_frames_from(frames_.size());
+}
+
+void ResultsRecorder::begin() {
+  if (writes("vtk") && !model_.obstacles.empty()) write_vtk_obstacles(directory_.vtk_obstacles(), deck_, model_);
+  write_index();
+}
+
+void ResultsRecorder::frame(const Moment& now) {
+  const std::vector<BodySnapshot> bodies = solver_.snapshot(fields_, true);
+  require_finite(now, layout_, bodies, model_.dim);
+  const std::size_t number = frames_.size();
+  if (writes("hdf5")) write_frame(directory_.frame(number), now, layout_, bodies, model_.dim);
+  if (writes("vtk")) write_vtk_frame(directory_.vtk_frame(number), now, layout_, bodies, model_.dim);
+  frames_.push_back({now.step, now.time});
+  if (writes("vtk")) write_vtk_series(directory_, frames_);
+  write_index();
+  spdlog::debug("frame {} at {:.9g} s, step {}", number, now.time, now.step);
+}
+
+void ResultsRecorder::gauges(const Moment& now) { gauges_.measure(now, solver_); }
+
+void ResultsRecorder::write_index() const { ::jaxmpm::write_index(directory_, deck_, backend_, frames_, gauges_.series()); }
+
+void ResultsRecorder::drop_after(std::uint64_t step) {
+  gauges_.drop_after(step);
+  while (!frames_.empty() && frames_.back().step > step) frames_.pop_back();
+}
+
+void ResultsRecorder::checkpoint(const Moment& now, const std::vector<RawArray>& state, double seconds) {
+  drop_after(now.step);  // a rescue goes back to before the failure
+  const std::string next = directory_.next_checkpoint();
+  ::jaxmpm::write_checkpoint(next, {now, seconds, deck_.resolved, backend_, frames_, gauges_.series(), state});
+  // A kill between the renames leaves the new one under its first name; resume looks there too.
+  if (std::filesystem::exists(directory_.checkpoint())) rename_file(directory_.checkpoint(), directory_.previous_checkpoint());
+  rename_file(next, directory_.checkpoint());
+  spdlog::debug("checkpoint at {:.9g} s, step {}", now.time, now.step);
+}
+
+void ResultsRecorder::progress(const Moment& now, double end) { progress_.update(now, end); }
+
+}  // namespace jaxmpm

@@ -1,0 +1,100 @@
+// How far a body reaches: along an axis, or in horizontal distance from a centre.
+#include "observe/front.hpp"
+
+#include <cmath>
+
+#include "observe/clusters.hpp"
+#include "observe/gauges.hpp"
+
+namespace jaxmpm {
+namespace {
+
+class Front : public Gauge {
+ public:
+  Front(const deck::FrontGauge& gauge, const Model& model)
+      : gauge_(gauge),
+        body_(body_index(model, gauge.body, "/body")),
+        up_(up_axis(model).axis),
+        width_(gauge.smooth.value_or(model.cell_size)) {
+    // What the gauge needs of the model, without its particles.
+    model_.dim = model.dim;
+    model_.cells = model.cells;
+    model_.domain_min = model.domain_min;
+    model_.cell_size = model.cell_size;
+    high_ = domain_max(model);
+    radial_ = gauge.axis == "radius";
+    axis_ = radial_ ? -1 : gauge.axis[0] - 'x';
+    if (radial_)
+      for (int a = 0, k = 0; a < model.dim; ++a) center_[a] = a == up_ ? 0 : gauge.center[k++];
+  }
+  std::vector<Channel> channels() const override { return {{"value", "m", {}, {}}}; }
+  FieldSelection needs() const override { return gauge_.depth ? selection({"density"}) : FieldSelection{}; }
+  Sample measure(const Scene& scene, const std::vector<double>*) const override {
+    const BodySnapshot& body = scene.bodies[body_];
+    const double sign = gauge_.direction == "-" ? -1 : 1;
+    const std::vector<bool> kept = gauge_.connected ? in_largest_cluster(body, model_) : std::vector<bool>(body.id.size(), true);
+    std::vector<Along> material;
+    material.reserve(body.id.size());
+    for (std::size_t p = 0; p < body.id.size(); ++p)
+      if (kept[p])
+        material.push_back(
+            {sign * coordinate(&body.position[p * model_.dim]), gauge_.depth ? body.mass[p] / body.density[p] : body.mass[p]});
+    Sample sample = gauge_.depth
+                        ? depth_front(material, *gauge_.depth, width_, model_.cell_size, [&](double s) { return breadth(sign * s); })
+                        : quantile_front(material, gauge_.quantile.value_or(0.995), width_, model_.cell_size);
+    for (double& value : sample.values) value *= sign;
+    return sample;
+  }
+
+ private:
+  double coordinate(const double* x) const {
+    if (!radial_) return x[axis_];
+    double square = 0;
+    for (int a = 0; a < model_.dim; ++a)
+      if (a != up_) square += (x[a] - center_[a]) * (x[a] - center_[a]);
+    return std::sqrt(square);
+  }
+
+  /// Horizontal extent across the coordinate: the domain's breadth (1 in 2D), or the part of the circle that lies in the domain.
+  double breadth(double s) const {
+    if (radial_) return arc(s);
+    double extent = 1;
+    for (int a = 0; a < model_.dim; ++a)
+      if (a != axis_ && a != up_) extent *= high_[a] - model_.domain_min[a];
+    return extent;
+  }
+  double arc(double radius) const {
+    constexpr int pieces = 720;
+    int inside = 0;
+    if (model_.dim == 2) {  // the two points at that distance
+      const int a = 1 - up_;
+      for (const double x : {center_[a] - radius, center_[a] + radius}) inside += x >= model_.domain_min[a] && x <= high_[a];
+      return inside;
+    }
+    for (int k = 0; k < pieces; ++k) {
+      const double angle = 2 * M_PI * (k + 0.5) / pieces, offset[2] = {radius * std::cos(angle), radius * std::sin(angle)};
+      bool within = true;
+      for (int a = 0, h = 0; a < 3; ++a)
+        if (a != up_) {
+          const double x = center_[a] + offset[h++];
+          within = within && x >= model_.domain_min[a] && x <= high_[a];
+        }
+      inside += within;
+    }
+    return 2 * M_PI * std::abs(radius) * inside / pieces;
+  }
+
+  deck::FrontGauge gauge_;
+  Model model_;
+  std::size_t body_;
+  int up_, axis_ = 0;
+  bool radial_ = false;
+  double width_;
+  Point center_{}, high_{};
+};
+
+}  // namespace
+
+std::unique_ptr<Gauge> make_gauge(const deck::FrontGauge& gauge, const Model& model) { return std::make_unique<Front>(gauge, model); }
+
+}  // namespace jaxmpm

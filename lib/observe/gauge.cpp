@@ -1,0 +1,117 @@
+#include "observe/gauge.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <cmath>
+
+#include "core/error.hpp"
+#include "observe/gauges.hpp"
+
+namespace jaxmpm {
+
+std::size_t Channel::size() const {
+  std::size_t count = 1;
+  for (const std::size_t extent : shape) count *= extent;
+  return count;
+}
+
+std::size_t GaugeSeries::width() const {
+  std::size_t sum = 0;
+  for (const Channel& channel : channels) sum += channel.size();
+  return sum;
+}
+
+GaugeSet::GaugeSet(const deck::Deck& deck, const Model& model) {
+  for (const auto& [name, wanted] : deck.gauges) {
+    std::unique_ptr<Gauge> gauge;
+    try {
+      gauge = std::visit([&](const auto& kind) { return make_gauge(kind, model); }, wanted);
+    } catch (const DeckError& error) {  // a gauge's file knows its own keys, not its name
+      std::vector<Problem> problems = error.problems;
+      for (Problem& problem : problems) problem.pointer = "/gauges/" + name + problem.pointer;
+      throw DeckError(problems);
+    }
+    needs_ = needs_ | gauge->needs();
+    needs_particles_ = needs_particles_ || gauge->needs_particles();
+    series_[name].channels = gauge->channels();
+    gauges_[name] = std::move(gauge);
+  }
+}
+
+bool GaugeSet::needs_forces() const {
+  for (const auto& [name, gauge] : gauges_)
+    if (gauge->needs_forces()) return true;
+  return false;
+}
+
+void GaugeSet::measure(const Moment& now, const Solver& solver) {
+  if (gauges_.empty()) return;
+  const std::vector<BodySnapshot> bodies = needs_particles_ ? solver.snapshot(needs_, false) : std::vector<BodySnapshot>{};
+  const ContactForces forces = needs_forces() ? solver.forces() : ContactForces{};
+  const Dissipation dissipation = solver.dissipation();
+  const Scene scene{now, bodies, forces, dissipation};
+  std::map<std::string, Sample> samples;
+  for (const auto& [name, gauge] : gauges_) {
+    const GaugeSeries& past = series_[name];
+    const std::size_t width = past.width();
+    const std::vector<double> first(past.values.begin(), past.values.begin() + static_cast<std::ptrdiff_t>(past.time.empty() ? 0 : width));
+    Sample sample = gauge->measure(scene, past.time.empty() ? nullptr : &first);
+    if (!sample.valid) sample.values.assign(width, 0.0);
+    for (const double value : sample.values)
+      if (!std::isfinite(value))
+        throw NumericsError(
+            fmt::format("gauge '{}' is not finite at step {}, {:.9g} s: the run is unstable. Take a smaller /time/step or /time/cfl.", name,
+                        now.step, now.time));
+    samples[name] = std::move(sample);
+  }
+  for (auto& [name, sample] : samples) {
+    GaugeSeries& series = series_[name];
+    series.step.push_back(now.step);
+    series.time.push_back(now.time);
+    series.valid.push_back(sample.valid ? 1 : 0);
+    series.values.insert(series.values.end(), sample.values.begin(), sample.values.end());
+  }
+}
+
+void GaugeSet::restore(const std::map<std::string, GaugeSeries>& series) {
+  for (auto& [name, own] : series_) {
+    const auto found = series.find(name);
+    if (found == series.end() || found->second.width() != own.width() ||
+        found->second.values.size() != own.width() * found->second.time.size())
+      throw IoError("the checkpoint holds no matching readings of gauge '" + name + "'. Start the run anew with --overwrite.");
+    const std::vector<Channel> channels = own.channels;
+    own = found->second;
+    own.channels = channels;
+  }
+}
+
+void GaugeSet::drop_after(std::uint64_t step) {
+  for (auto& [name, series] : series_)
+    while (!series.step.empty() && series.step.back() > step) {
+      series.step.pop_back();
+      series.time.pop_back();
+      series.valid.pop_back();
+      series.values.resize(series.values.size() - series.width());
+    }
+}
+
+Point domain_max(const Model& model) {
+  Point top = model.domain_min;
+  for (int a = 0; a < model.dim; ++a) top[a] += model.cells[a] * model.cell_size;
+  return top;
+}
+
+UpAxis up_axis(const Model& model) {
+  int axis = model.dim - 1;
+  for (int a = 0; a < model.dim; ++a)
+    if (std::abs(model.gravity[a]) > std::abs(model.gravity[axis])) axis = a;
+  return {axis, model.gravity[axis] > 0 ? -1.0 : 1.0};
+}
+
+std::size_t body_index(const Model& model, const std::string& name, const std::string& pointer) {
+  for (std::size_t b = 0; b < model.bodies.size(); ++b)
+    if (model.bodies[b].name == name) return b;
+  throw DeckError(pointer, "there is no body '" + name + "'.");
+}
+
+}  // namespace jaxmpm

@@ -1,0 +1,27 @@
+#pragma once
+// The registry: one line for each kind of gauge. The kind's documentation for users is in the deck's describe().
+#include "observe/gauge.hpp"
+
+namespace jaxmpm {
+
+std::unique_ptr<Gauge> make_gauge(const deck::FrontGauge& gauge, const Model& model);
+std::unique_ptr<Gauge> make_gauge(const deck::RegionMeanGauge& gauge, const Model& model);
+std::unique_ptr<Gauge> make_gauge(const deck::HeightGauge& gauge, const Model& model);
+std::unique_ptr<Gauge> make_gauge(const deck::PressureGauge& gauge, const Model& model);
+std::unique_ptr<Gauge> make_gauge(const deck::ForceGauge& gauge, const Model& model);
+std::unique_ptr<Gauge> make_gauge(const deck::EnergyGauge& gauge, const Model& model);
+std::unique_ptr<Gauge> make_gauge(const deck::MomentumGauge& gauge, const Model& model);
+std::unique_ptr<Gauge> make_gauge(const deck::ParticlesGauge& gauge, const Model& model);
+
+/// Upper ends of the domain, m.
+Point domain_max(const Model& model);
+/// The axis that gravity is most nearly along (the last one without gravity), and +1 or −1: the direction along it that is up.
+struct UpAxis {
+  int axis;
+  double sign;
+};
+UpAxis up_axis(const Model& model);
+/// Place of a body among the model's. Throws DeckError at `pointer` when there is none of that name.
+std::size_t body_index(const Model& model, const std::string& name, const std::string& pointer);
+
+}  // namespace jaxmpm

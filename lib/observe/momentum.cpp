@@ -1,0 +1,30 @@
+// Total linear momentum, Σ m v.
+#include "observe/gauges.hpp"
+
+namespace jaxmpm {
+namespace {
+
+class Momentum : public Gauge {
+ public:
+  explicit Momentum(int dim) : dim_(dim) {}
+  std::vector<Channel> channels() const override {
+    return {{"value", dim_ == 2 ? "kg m/s/m" : "kg m/s", value_shape(Rank::vector, dim_), component_names(Rank::vector, dim_)}};
+  }
+  FieldSelection needs() const override { return selection({"velocity"}); }
+  Sample measure(const Scene& scene, const std::vector<double>*) const override {
+    Sample sample{true, std::vector<double>(dim_, 0.0)};
+    for (const BodySnapshot& body : scene.bodies)
+      for (std::size_t p = 0; p < body.mass.size(); ++p)
+        for (int a = 0; a < dim_; ++a) sample.values[a] += body.mass[p] * body.velocity[p * dim_ + a];
+    return sample;
+  }
+
+ private:
+  int dim_;
+};
+
+}  // namespace
+
+std::unique_ptr<Gauge> make_gauge(const deck::MomentumGauge&, const Model& model) { return std::make_unique<Momentum>(model.dim); }
+
+}  // namespace jaxmpm

@@ -1,0 +1,28 @@
+#pragma once
+// The quadratic B-spline as a smooth weight of observations (Du & He 2025, Eq 5), its integral, and both with the mirror images of walls.
+#include <cmath>
+
+namespace jaxmpm {
+
+/// Weight at distance r, in widths; its integral over r is 1 and it vanishes beyond 1.5.
+inline double spline(double r) {
+  r = std::abs(r);
+  if (r < 0.5) return 0.75 - r * r;
+  return r < 1.5 ? 0.5 * (1.5 - r) * (1.5 - r) : 0;
+}
+
+/// Integral of the weight from −∞ to r: a step from 0 to 1 that is smooth over three widths.
+inline double spline_step(double r) {
+  if (r <= -1.5) return 0;
+  if (r >= 1.5) return 1;
+  if (r < -0.5) return std::pow(r + 1.5, 3) / 6;
+  return r < 0.5 ? 0.5 + 0.75 * r - r * r * r / 3 : 1 - std::pow(1.5 - r, 3) / 6;
+}
+
+/// Weight at x of material at xp between walls at `low` and `high`, with its mirror images behind them, so that a full column weighs as
+/// much beside a wall.
+inline double mirrored_spline(double x, double xp, double low, double high, double width) {
+  return spline((x - xp) / width) + spline((x - (2 * low - xp)) / width) + spline((x - (2 * high - xp)) / width);
+}
+
+}  // namespace jaxmpm

@@ -1,0 +1,163 @@
+#include "solvers/simulation.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include "core/error.hpp"
+
+namespace jaxmpm {
+namespace {
+
+double since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+// A state is kept in memory so rarely that it costs at most one part in this of the run, and a rescue repeats no more than that many times
+// its cost.
+constexpr double rescue_share = 100;
+
+}  // namespace
+
+Simulation::Simulation(const deck::Time& time, const RunSettings& settings, Solver& solver, Recorder& recorder)
+    : control_(time),
+      frames_("/output/interval: a frame", settings.frame_interval, control_),
+      gauges_("/output/gauge_interval: a gauge", settings.gauge_interval, control_),
+      settings_(settings),
+      solver_(solver),
+      recorder_(recorder) {}
+
+std::vector<std::string> Simulation::notices() const {
+  std::vector<std::string> all = control_.notices();
+  for (const OutputSchedule* schedule : {&frames_, &gauges_}) all.insert(all.end(), schedule->notices().begin(), schedule->notices().end());
+  return all;
+}
+
+RunOutcome Simulation::run(const RunStart& start) {
+  started_ = last_checkpoint_ = Clock::now();
+  now_ = start.at;
+  outcome_ = {start.at, false, start.seconds, 0};
+  checkpointed_ = start.resumed;
+  attempted_ = now_;
+  remember();
+  try {
+    if (!start.resumed) record();
+    loop();
+    if (outcome_.finished) record_end();
+  } catch (const NumericsError& failure) {
+    rescue(failure);
+  }
+  outcome_.at = now_;
+  return outcome_;
+}
+
+void Simulation::loop() {
+  while (!control_.done(now_)) {
+    if (should_stop()) {
+      if (!checkpointed_) write_checkpoint();
+      return;
+    }
+    checkpoint_if_due();
+    remember_if_cheap();
+    step();
+    record();
+  }
+  outcome_.finished = true;
+}
+
+Moment Simulation::next() const { return control_.after_next(now_, control_.is_automatic() ? solver_.stable_step() : 0); }
+
+void Simulation::step() {
+  const Moment after = next();
+  attempted_ = after;
+  // The end shortens its step. The checkpoint of a finished run is therefore the state before it, from which a later end continues as if
+  // this one had never been.
+  if (control_.is_automatic() && control_.done(after) && !checkpointed_) write_checkpoint();
+  const Clock::time_point begin = Clock::now();
+  solver_.step(after.dt);
+  outcome_.seconds += since(begin);
+  ++outcome_.steps;
+  now_ = after;
+  checkpointed_ = false;
+  recorder_.progress(now_, control_.end());
+}
+
+void Simulation::record() {
+  if (gauges_.due(now_)) recorder_.gauges(now_);
+  if (frames_.due(now_)) recorder_.frame(now_);
+}
+
+void Simulation::record_end() {
+  if (!control_.is_automatic() && !checkpointed_) write_checkpoint();
+  if (!gauges_.due(now_)) recorder_.gauges(now_);
+  if (!frames_.due(now_)) recorder_.frame(now_);
+}
+
+bool Simulation::should_stop() const {
+  if (settings_.stop_requested && settings_.stop_requested()) return true;
+  return settings_.walltime_seconds > 0 && since(started_) >= settings_.walltime_seconds;
+}
+
+void Simulation::checkpoint_if_due() {
+  if (settings_.checkpoint_seconds > 0 && since(last_checkpoint_) >= settings_.checkpoint_seconds && !checkpointed_) write_checkpoint();
+}
+
+void Simulation::write_checkpoint() {
+  remember();
+  recorder_.checkpoint(now_, remembered_, outcome_.seconds);
+  last_checkpoint_ = Clock::now();
+  checkpointed_ = true;
+}
+
+void Simulation::remember() {
+  const Clock::time_point begin = Clock::now();
+  remembered_ = solver_.save();
+  remembered_at_ = now_;
+  remember_cost_ = since(begin);
+  last_remembered_ = Clock::now();
+}
+
+void Simulation::remember_if_cheap() {
+  constexpr double at_least = 1;  // s
+  if (since(last_remembered_) >= std::max(at_least, rescue_share * remember_cost_)) remember();
+}
+
+Moment Simulation::return_to(std::uint64_t step) {
+  solver_.restore(remembered_);
+  now_ = remembered_at_;
+  while (now_.step < step) {
+    const Moment after = next();
+    solver_.step(after.dt);
+    now_ = after;
+  }
+  return now_;
+}
+
+void Simulation::rescue(const NumericsError& failure) {
+  std::string where;
+  try {
+    where = write_last_good();
+  } catch (const std::exception& second) {
+    where = fmt::format("The last good state could not be written ({}); the frames and checkpoints before it are whole.", second.what());
+  }
+  throw NumericsError(
+      fmt::format("{}\nin step {}, from {:.9g} s to {:.9g} s (dt {:.4g} s). Take a smaller {}, and look for a load or velocity that the "
+                  "material's stiffness cannot carry.\n{}",
+                  failure.what(), attempted_.step, attempted_.before, attempted_.time, attempted_.dt,
+                  control_.is_automatic() ? "/time/cfl" : "/time/step (or \"auto\")", where));
+}
+
+std::string Simulation::write_last_good() {
+  const auto write = [&] {
+    recorder_.checkpoint(now_, solver_.save(), outcome_.seconds);
+    recorder_.frame(now_);
+    return fmt::format("The last good state (step {}, {:.9g} s) is in the last frame and in the checkpoint.", now_.step, now_.time);
+  };
+  try {
+    return_to(attempted_.step > 0 ? attempted_.step - 1 : 0);
+    return write();
+  } catch (const NumericsError&) {  // a device may add in another order and fail earlier: what was remembered is good
+    return_to(remembered_at_.step);
+    return write();
+  }
+}
+
+}  // namespace jaxmpm
