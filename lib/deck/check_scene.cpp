@@ -38,16 +38,16 @@ void check_unique(const std::vector<std::string>& names, const std::string& list
 
 void check_materials(const Deck& deck, const Place& root) {
   std::set<std::string> used;
-  bool all_read = root.given("bodies") && root.value["bodies"].is_array();
+  bool all_found = !deck.bodies.empty();
   for (std::size_t i = 0; i < deck.bodies.size(); ++i) {
     const std::string pointer = join(item("bodies", i), "material");
-    used.insert(deck.bodies[i].material);
-    all_read = all_read && sound(root, pointer);
     if (sound(root, pointer))
       check_reference(deck.bodies[i].material, names_in(deck.materials), "material", root.key("bodies").item(i).key("material"));
+    all_found = all_found && sound(root, pointer);
+    used.insert(deck.bodies[i].material);
   }
   for (const auto& [name, material] : deck.materials)
-    if (all_read && used.count(name) == 0)
+    if (all_found && used.count(name) == 0)
       root.reader.problem(join("/materials", name), "no body uses this material; give it to one or remove it");
 }
 

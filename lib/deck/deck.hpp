@@ -152,7 +152,7 @@ struct FrontGauge {
   std::string body, axis, direction = "+";        // axis: x, y, z or radius (about center)
   std::optional<double> quantile, depth, smooth;  // quantile 0.995 unless depth is given; smooth: cell_size
   bool connected = false;
-  Numbers center;
+  Numbers center;  // horizontal coordinates of the axis of the radius; only with axis radius
 };
 struct RegionMeanGauge {
   std::string field;

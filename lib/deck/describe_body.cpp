@@ -48,7 +48,9 @@ void describe(Description<Mlp>& d) {
 
 void describe(Description<ParticleFile>& d) {
   d.is("particles", "Values at particles from a file.");
-  d.required("file", &ParticleFile::file).items(1).help("results.h5, or a CSV with the columns time, id, vx, vy[, vz].");
+  d.required("file", &ParticleFile::file)
+      .items(1)
+      .help("CSV with the columns id, vx, vy[, vz], one row for each particle of the body; a column time must hold one time.");
 }
 
 void describe(Description<SurfacePoint>& d) {

@@ -1,5 +1,7 @@
 // Domain, time and method.
 #include <cmath>
+#include <iomanip>
+#include <sstream>
 
 #include "deck/descriptions.hpp"
 
@@ -25,10 +27,11 @@ void check_axis(const Domain& domain, std::size_t axis, const described::Place& 
                                    " are possible: enlarge the cells or shrink the domain");
   } else if (std::fabs(cells - whole) > whole_cell_tolerance || whole < 1) {
     const double below = std::max(1.0, std::floor(cells)), above = below + 1;
-    place.problem("cell_size", "does not divide the extent " + shown_number(extent) + " of axis " + item + " into whole cells (" +
-                                   shown_number(cells) + "); nearest cell sizes: " + shown_number(extent / above) + " or " +
-                                   shown_number(extent / below) + ", nearest extents: " + shown_number(below * h) + " or " +
-                                   shown_number(above * h));
+    std::ostringstream text;
+    text << std::setprecision(12) << "does not divide the extent " << extent << " of axis " << axis << " into whole cells (" << cells
+         << "); nearest cell sizes: " << extent / above << " or " << extent / below << ", nearest extents: " << below * h << " or "
+         << above * h;
+    place.problem("cell_size", text.str());
   }
 }
 

@@ -15,7 +15,9 @@ const std::vector<std::string>& field_names() {
 void describe(Description<FrontGauge>& d) {
   d.is("front", "How far a body reaches along an axis: a quantile of its mass, or where it is still `depth` deep.", family);
   d.required("body", &FrontGauge::body).help("Name of a body.");
-  d.required("axis", &FrontGauge::axis).choices({"x", "y", "z", "radius"}).help("\"radius\" is the horizontal distance from `center`.");
+  d.required("axis", &FrontGauge::axis)
+      .choices({"x", "y", "z", "radius"})
+      .help("\"radius\" is the distance from the vertical axis through `center`.");
   d.optional("direction", &FrontGauge::direction).choices({"+", "-"}).help("Towards larger or smaller coordinates.");
   d.optional("quantile", &FrontGauge::quantile)
       .above(0)
@@ -44,7 +46,7 @@ void describe(Description<FrontGauge>& d) {
       .when(
           {"axis"}, [](const FrontGauge& g) { return g.axis == "radius"; }, "axis \"radius\"")
       .otherwise("required with axis \"radius\"")
-      .help("Horizontal coordinates of the axis of the radius.");
+      .help("Horizontal coordinates of the vertical axis from which the radius is measured.");
   d.check({"axis", "center"}, [](const FrontGauge& g, const described::Place& place) {
     if (g.axis == "radius" && !place.given("center")) place.problem("center", "is missing: axis \"radius\" needs it");
     if (g.axis == "z" && place.reader.dimension() == 2) place.problem("axis", "there is no z in a 2D domain; choose x, y or radius");
