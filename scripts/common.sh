@@ -50,6 +50,7 @@ install() {
   fi
   say "installing ${missing[*]}"
   as_root apt-get -qq update
-  as_root env DEBIAN_FRONTEND=noninteractive apt-get -qq -y --no-install-recommends install "${missing[@]}"
+  # Some 550 packages come with VTK. Not waiting for the disk after each of them, as Debian's own installer does, saves minutes.
+  as_root env DEBIAN_FRONTEND=noninteractive apt-get -qq -y --no-install-recommends -o Dpkg::Options::=--force-unsafe-io install "${missing[@]}"
 }
 set -o pipefail

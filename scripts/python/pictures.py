@@ -150,7 +150,7 @@ def draw_2d(axes, frame, results, field, limits, box):
 
 def splat(points, depth, values, spacing, box, pixels=1100):
     """An image of what lies nearest to the viewer (greatest depth), NaN where nothing is; pixels not finer than the particles."""
-    size = max(spacing, max(box[0][1] - box[0][0], box[1][1] - box[1][0]) / pixels)
+    size = max(1.25 * spacing, max(box[0][1] - box[0][0], box[1][1] - box[1][0]) / pixels)
     columns, rows = (int(np.ceil((b - a) / size)) + 1 for a, b in box)
     image, near = np.full((rows, columns), np.nan), np.full((rows, columns), np.nan)
     i = ((points[:, 0] - box[0][0]) / size).astype(int)
