@@ -96,6 +96,7 @@ std::size_t Table::column(const std::string& name) const {
 
 Table read_table(const std::string& path, const std::string& pointer) {
   const std::string contents = read_file(path, pointer);
+  if (contents.compare(0, 4, "\x89HDF") == 0) bad_file(pointer, path, 0, "this is an HDF5 file; a table is expected, as CSV");
   Table table{path, pointer, {}, {}, {}};
   std::string_view rest = contents;
   for (int line = 1; !rest.empty(); ++line) {

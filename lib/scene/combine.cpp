@@ -1,4 +1,5 @@
-// Union and difference of shapes.
+// Union and difference of shapes. Their distances are exact where a single part is met; inside a union and outside a difference they are
+// bounds from below near places where parts meet, with the right sign everywhere.
 #include <algorithm>
 
 #include "scene/geometry.hpp"

@@ -20,7 +20,7 @@ double angle_between(const Point& a, const Point& b) { return std::atan2(norm(cr
 TriangleMesh::TriangleMesh(const std::vector<Triangle>& triangles, const std::function<void(const std::string&, const Point&)>& fail) {
   weld(triangles);
   check_closed(fail);
-  face_outwards();
+  face_outwards(fail);
   make_normals();
 }
 
@@ -51,10 +51,11 @@ void TriangleMesh::check_closed(const std::function<void(const std::string&, con
   }
 }
 
-void TriangleMesh::face_outwards() {
+void TriangleMesh::face_outwards(const std::function<void(const std::string&, const Point&)>& fail) {
   double six_volumes = 0;
   for (std::size_t t = 0; t < size(); ++t) six_volumes += dot(corner(t, 0), cross(corner(t, 1), corner(t, 2)));
-  if (six_volumes >= 0) return;
+  if (six_volumes == 0) fail("the surface encloses no volume", vertices_[0]);
+  if (six_volumes > 0) return;
   for (auto& t : triangles_) std::swap(t[1], t[2]);
 }
 

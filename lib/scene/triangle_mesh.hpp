@@ -33,7 +33,7 @@ class TriangleMesh {
  private:
   void weld(const std::vector<Triangle>& triangles);
   void check_closed(const std::function<void(const std::string&, const Point&)>& fail) const;
-  void face_outwards();
+  void face_outwards(const std::function<void(const std::string&, const Point&)>& fail);
   void make_normals();
 
   std::vector<Point> vertices_;
