@@ -1,9 +1,8 @@
 #pragma once
 // Rigid obstacles on the grid: predictor–corrector contact at nodes inside a solid, with normals from its signed distance (Eqs 33, 35, 36).
-#include <algorithm>
-#include <cmath>
-#include <vector>
+#include <cstdint>
 
+#include "core/scalar.hpp"
 #include "core/tensor.hpp"
 #include "scene/model.hpp"
 
@@ -29,7 +28,8 @@ struct ObstacleContact {
 
 /// Applies one obstacle to the velocity of a node of mass m.
 template <class T, int Dim>
-ObstacleContact<T, Dim> apply_obstacle(deck::ContactKind kind, T friction, const Vector<T, Dim>& normal, T mass, Vector<T, Dim>& v) {
+JAXMPM_INLINE ObstacleContact<T, Dim> apply_obstacle(deck::ContactKind kind, T friction, const Vector<T, Dim>& normal, T mass,
+                                                     Vector<T, Dim>& v) {
   using Kind = deck::ContactKind;
   ObstacleContact<T, Dim> done{};
   const Vector<T, Dim> before = v;
@@ -42,7 +42,7 @@ ObstacleContact<T, Dim> apply_obstacle(deck::ContactKind kind, T friction, const
     T square = 0;
     for (int c = 0; c < Dim; ++c) square += v[c] * v[c];
     if (square > 0) {
-      const T scale = std::max(T(0), T(1) - friction * -vn / std::sqrt(square));
+      const T scale = max(T(0), T(1) - friction * -vn / sqrt(square));
       for (int c = 0; c < Dim; ++c) v[c] *= scale;
       done.friction_work = T(0.5) * mass * square * (T(1) - scale * scale);
     }

@@ -2,43 +2,62 @@
 // Domain faces on the grid: the mirror images beyond a wall, folded onto their twins (docs/theory.md, "Grid update").
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <vector>
 
+#include "core/scalar.hpp"
+#include "core/tensor.hpp"
 #include "scene/model.hpp"
 
 namespace jaxmpm {
 
-/// Faces of the domain in the precision of the step.
+/// Faces of the domain in the precision of the step: a plain view that kernels copy, on the segments of a WallTable.
 template <class T, int Dim>
 struct Walls {
   struct Face {
     deck::ContactKind kind;
-    std::vector<double> to;
-    std::vector<T> coefficient;
+    int first, count;  // its segments
     int segment_axis;
-    /// Friction coefficient at a node: that of the first segment with X ≤ to.
-    T friction(const std::array<int, Dim>& node) const {
-      if (coefficient.empty()) return T(0);
-      const std::size_t last = coefficient.size() - 1;
-      for (std::size_t k = 0; k < to.size() && k < last; ++k)
-        if (node[std::size_t(segment_axis)] <= to[k]) return coefficient[k];
-      return coefficient[last];
-    }
-    bool always() const { return kind == deck::ContactKind::slip || kind == deck::ContactKind::no_slip; }
+    JAXMPM_FUNCTION bool always() const { return kind == deck::ContactKind::slip || kind == deck::ContactKind::no_slip; }
   };
   std::array<int, Dim> cells;
   std::array<Face, 2 * Dim> faces;
+  const double* to;      // ends of all segments, cells
+  const T* coefficient;  // one per segment
 
-  explicit Walls(const Model& model) {
+  /// Friction coefficient of a face at a node: that of the first segment with X ≤ to, behind the last that of the last.
+  JAXMPM_FUNCTION T friction(int face, const std::array<int, Dim>& node) const {
+    const Face& f = faces[std::size_t(face)];
+    if (f.count == 0) return T(0);
+    int k = f.first;
+    for (const int last = f.first + f.count - 1; k < last && !(node[std::size_t(f.segment_axis)] <= to[k]); ++k) {
+    }
+    return coefficient[k];
+  }
+  /// Whether a node is a ghost, a twin or on a face along some axis: everywhere else the update is plain division.
+  JAXMPM_FUNCTION bool near_face(int axis, int node) const { return node <= 1 || node >= cells[std::size_t(axis)] - 1; }
+};
+
+/// The segments of all faces of a model.
+template <class T, int Dim>
+struct WallTable {
+  std::vector<double> to;  // of a face without segments: 0, never asked
+  std::vector<T> coefficient;
+  std::array<int, Dim> cells;
+  std::array<typename Walls<T, Dim>::Face, 2 * Dim> faces;
+
+  explicit WallTable(const Model& model) {
     for (int d = 0; d < Dim; ++d) cells[std::size_t(d)] = model.cells[std::size_t(d)];
     for (std::size_t f = 0; f < faces.size(); ++f) {
       const FaceLaw& law = model.faces[f];
-      faces[f] = {law.kind, law.to, {law.coefficient.begin(), law.coefficient.end()}, law.segment_axis};
+      faces[f] = {law.kind, int(to.size()), int(law.coefficient.size()), law.segment_axis};
+      coefficient.insert(coefficient.end(), law.coefficient.begin(), law.coefficient.end());
+      to.insert(to.end(), law.to.begin(), law.to.begin() + std::ptrdiff_t(std::min(law.to.size(), law.coefficient.size())));
+      to.resize(coefficient.size());
     }
   }
-  /// Whether a node is a ghost, a twin or on a face along some axis: everywhere else the update is plain division.
-  bool near_face(int axis, int node) const { return node <= 1 || node >= cells[std::size_t(axis)] - 1; }
+  /// The view for kernels; the arrays are this table's, or copies of them in another memory.
+  Walls<T, Dim> view() const { return view(to.data(), coefficient.data()); }
+  Walls<T, Dim> view(const double* ends, const T* values) const { return {cells, faces, ends, values}; }
 };
 
 /// Mass and predicted momentum P of a node before any wall acts.
@@ -66,24 +85,26 @@ class WallUpdate {
   const Obstacles& obstacles_;
   T cut_off_;
 
-  int n(int axis) const { return walls_.cells[std::size_t(axis)]; }
-  int reflect(int axis, int i) const { return i < 0 ? -i : (i > n(axis) ? 2 * n(axis) - i : i); }
+  JAXMPM_FUNCTION int n(int axis) const { return walls_.cells[std::size_t(axis)]; }
+  JAXMPM_FUNCTION int reflect(int axis, int i) const { return i < 0 ? -i : (i > n(axis) ? 2 * n(axis) - i : i); }
   /// Face that a ghost, face or twin node belongs to along an axis, −1 for none.
-  int face_of(int axis, int i) const { return i <= 1 && i >= -1 ? 2 * axis : (i >= n(axis) - 1 && i <= n(axis) + 1 ? 2 * axis + 1 : -1); }
-  int plane(int face) const { return face % 2 == 0 ? 0 : n(face / 2); }
-  T inward(int face) const { return face % 2 == 0 ? T(1) : T(-1); }
-  T sign(int face, int component) const {
+  JAXMPM_FUNCTION int face_of(int axis, int i) const {
+    return i <= 1 && i >= -1 ? 2 * axis : (i >= n(axis) - 1 && i <= n(axis) + 1 ? 2 * axis + 1 : -1);
+  }
+  JAXMPM_FUNCTION int plane(int face) const { return face % 2 == 0 ? 0 : n(face / 2); }
+  JAXMPM_FUNCTION T inward(int face) const { return face % 2 == 0 ? T(1) : T(-1); }
+  JAXMPM_FUNCTION T sign(int face, int component) const {
     return component == face / 2 || walls_.faces[std::size_t(face)].kind == deck::ContactKind::no_slip ? T(-1) : T(1);
   }
 
-  bool inside(const Node& node) const {
+  JAXMPM_FUNCTION bool inside(const Node& node) const {
     for (int d = 0; d < Dim; ++d)
       if (node[std::size_t(d)] < 0 || node[std::size_t(d)] > n(d)) return false;
     return true;
   }
 
   /// Whether the material presses on a face along the lattice line through `node`.
-  bool in_contact(int face, Node node) const {
+  JAXMPM_FUNCTION bool in_contact(int face, Node node) const {
     if (walls_.faces[std::size_t(face)].always()) return true;
     for (int d = 0; d < Dim; ++d) node[std::size_t(d)] = d == face / 2 ? plane(face) : reflect(d, node[std::size_t(d)]);
     const NodeSums<T, Dim> f = raw_(node);
@@ -91,7 +112,7 @@ class WallUpdate {
   }
 
   /// Sums of a node with the twins along the axes of `ghosts` (face per axis or −1) folded onto it, axis `skip` left out.
-  NodeSums<T, Dim> folded(const Node& node, const std::array<int, Dim>& twin_face, int skip) const {
+  JAXMPM_FUNCTION NodeSums<T, Dim> folded(const Node& node, const std::array<int, Dim>& twin_face, int skip) const {
     NodeSums<T, Dim> sum = raw_(node);
     for (int subset = 1; subset < (1 << Dim); ++subset) {
       Node image = node;
@@ -115,11 +136,11 @@ class WallUpdate {
   }
 
  public:
-  WallUpdate(const Walls<T, Dim>& walls, const Raw& raw, const Obstacles& obstacles, T cut_off)
+  JAXMPM_FUNCTION WallUpdate(const Walls<T, Dim>& walls, const Raw& raw, const Obstacles& obstacles, T cut_off)
       : walls_(walls), raw_(raw), obstacles_(obstacles), cut_off_(cut_off) {}
 
   /// Velocity after walls and obstacles. `contact` (may be null) receives what happened at an inner node.
-  V velocity(Node node, NodeContact<T, Dim>* contact) const {
+  JAXMPM_FUNCTION V velocity(Node node, NodeContact<T, Dim>* contact) const {
     V mirror;
     for (int c = 0; c < Dim; ++c) mirror[c] = T(1);
     const Node asked = node;
@@ -148,8 +169,8 @@ class WallUpdate {
   }
 
  private:
-  void apply_faces(const Node& node, const std::array<int, Dim>& on_face, const std::array<int, Dim>& twin_face, T mass, V& v,
-                   NodeContact<T, Dim>* contact) const {
+  JAXMPM_FUNCTION void apply_faces(const Node& node, const std::array<int, Dim>& on_face, const std::array<int, Dim>& twin_face, T mass,
+                                   V& v, NodeContact<T, Dim>* contact) const {
     const V free = v;
     for (int axis = 0; axis < Dim; ++axis)  // normals first
       if (on_face[std::size_t(axis)] >= 0) v[axis] = T(0);
@@ -165,24 +186,24 @@ class WallUpdate {
       if (kind == deck::ContactKind::no_slip) {
         for (int c = 0; c < Dim; ++c) v[c] = T(0);
       } else if (kind == deck::ContactKind::friction) {
-        rub(axis, walls_.faces[std::size_t(face)].friction(node) * std::max(T(0), normal) / mass, mass, v, contact);
+        rub(axis, walls_.friction(face, node) * max(T(0), normal) / mass, mass, v, contact);
       }
       if (contact) report(face, axis, kind, normal, mass, free, v, beyond, *contact);
     }
   }
   /// Takes `loss` (m/s) off the velocity tangential to a face, to rest at most.
-  void rub(int axis, T loss, T mass, V& v, NodeContact<T, Dim>* contact) const {
+  JAXMPM_FUNCTION void rub(int axis, T loss, T mass, V& v, NodeContact<T, Dim>* contact) const {
     T square = 0;
     for (int c = 0; c < Dim; ++c)
       if (c != axis) square += v[c] * v[c];
     if (!(square > 0)) return;
-    const T scale = std::max(T(0), T(1) - loss / std::sqrt(square));
+    const T scale = max(T(0), T(1) - loss / sqrt(square));
     for (int c = 0; c < Dim; ++c)
       if (c != axis) v[c] *= scale;
     if (contact) contact->friction_work += T(0.5) * mass * square * (T(1) - scale * scale);
   }
-  void report(int face, int axis, deck::ContactKind kind, T normal, T mass, const V& free, const V& v, const NodeSums<T, Dim>& beyond,
-              NodeContact<T, Dim>& contact) const {
+  JAXMPM_FUNCTION void report(int face, int axis, deck::ContactKind kind, T normal, T mass, const V& free, const V& v,
+                              const NodeSums<T, Dim>& beyond, NodeContact<T, Dim>& contact) const {
     auto& impulse = contact.impulse[std::size_t(face)];
     for (int c = 0; c < Dim; ++c) {
       if (c == axis) impulse[std::size_t(c)] += inward(face) * normal;

@@ -3,6 +3,9 @@
 #include <Kokkos_Core.hpp>
 #include <cstddef>
 #include <string>
+#include <type_traits>
+
+#include "core/macros.hpp"
 
 namespace jaxmpm {
 
@@ -28,6 +31,48 @@ void parallel_for_host_static(const std::string& label, std::size_t n, const F& 
   if (n == 0) return;
   using Policy = Kokkos::RangePolicy<Host, Kokkos::Schedule<Kokkos::Static>, Kokkos::IndexType<std::size_t>>;
   Kokkos::parallel_for(label, Policy(0, n), f);
+}
+
+/// Whether an execution space works in the host's memory.
+template <class Space>
+inline constexpr bool on_host = std::is_same_v<typename Space::memory_space, Kokkos::HostSpace>;
+
+/// Runs f(i) for i = 0 … n−1 on any execution space, in its queue.
+template <class Space, class F>
+void parallel_for_on(const std::string& label, const Space& space, std::size_t n, const F& f) {
+  if (n > 0) Kokkos::parallel_for(label, Kokkos::RangePolicy<Space, Kokkos::IndexType<std::size_t>>(space, 0, n), f);
+}
+
+/// Scan over i = 0 … n−1: f(i, sum, final) adds its share to `sum`, which holds the shares of all i before; acts where `final`. Returns the
+/// total, so it waits.
+template <class Space, class F>
+typename F::value_type parallel_scan_on(const std::string& label, const Space& space, std::size_t n, const F& f) {
+  typename F::value_type total = 0;
+  if (n > 0) Kokkos::parallel_scan(label, Kokkos::RangePolicy<Space, Kokkos::IndexType<std::size_t>>(space, 0, n), f, total);
+  return total;
+}
+
+template <class Space>
+using Team = typename Kokkos::TeamPolicy<Space>::member_type;
+
+/// Runs f(team) for teams of `threads` threads (of one on the host) that share `scratch` bytes; teams are numbered by league_rank().
+template <class Space, class F>
+void parallel_for_teams(const std::string& label, const Space& space, std::size_t teams, int threads, std::size_t scratch, const F& f) {
+  if (teams == 0) return;
+  Kokkos::TeamPolicy<Space> policy(space, int(teams), on_host<Space> ? 1 : threads);
+  Kokkos::parallel_for(label, policy.set_scratch_size(0, Kokkos::PerTeam(int(scratch))), f);
+}
+
+/// Shares i = 0 … n−1 among the threads of a team, neighbours to neighbours.
+template <class Team, class F>
+JAXMPM_INLINE void team_for(const Team& team, int n, const F& f) {
+  for (int i = team.team_rank(); i < n; i += team.team_size()) f(i);
+}
+
+/// The team's shared memory, which parallel_for_teams() was asked for.
+template <class T, class Team>
+JAXMPM_INLINE T* team_memory(const Team& team, int values) {
+  return static_cast<T*>(team.team_scratch(0).get_shmem(values * int(sizeof(T))));
 }
 
 }  // namespace jaxmpm

@@ -13,13 +13,13 @@ namespace jaxmpm {
 template <int Dim>
 struct NeighbourOffset {
   int a, b, c;
-  explicit NeighbourOffset(int m)
+  explicit JAXMPM_INLINE NeighbourOffset(int m)
       : a(Dim == 2 ? m / 3 - 1 : m / 9 - 1), b(Dim == 2 ? m % 3 - 1 : m / 3 % 3 - 1), c(Dim == 2 ? 0 : m % 3 - 1) {}
 };
 
 /// Rows (runs along the last axis) that the arena of a neighbour shares with a block: f(own node, arena node, count).
 template <class Shape, int Dim, int S, class F>
-inline void for_each_shared_row(int a, int b, int c, F f) {
+JAXMPM_INLINE void for_each_shared_row(int a, int b, int c, F f) {
   const Overlap x = overlap<Shape::B, S>(a), y = overlap<Shape::B, S>(b), z = overlap<Shape::B, S>(c);
   if constexpr (Dim == 2) {
     for (int i = 0; i < x.count; ++i) f(Shape::own_node(x.from + i, y.from, 0), Shape::arena_node(x.in_arena + i, y.in_arena, 0), y.count);
@@ -70,25 +70,29 @@ struct GridConstants {
   T mass_cut_off;
 };
 
-/// Where no wall is near: P = p + Δt f + Δt m g, v = P / m. Sums become velocities in place ({m, v}, and FLIP's {–, v − p/m}).
+/// One node where no wall is near: P = p + Δt f + Δt m g, v = P / m. Sums become velocities in place ({m, v}, and FLIP's {–, v − p/m} in
+/// `change`).
 template <class Sch>
-void update_nodes(typename Sch::T* own, const GridConstants<typename Sch::T, Sch::Dim>& grid) {
+JAXMPM_INLINE void update_node(typename Sch::T* v, typename Sch::T* change, const GridConstants<typename Sch::T, Sch::Dim>& grid) {
   using T = typename Sch::T;
-  for (int node = 0; node < Sch::Shape::cells; ++node) {
-    T* v = own + 4 * node;
-    const bool some = v[0] > grid.mass_cut_off;
-    const T inverse = some ? T(1) / v[0] : T(0);
-    for (int c = 0; c < Sch::Dim; ++c) {
-      const T pull = some ? grid.gravity_step[c] : T(0);
-      if constexpr (Sch::flip) {
-        T& change = own[Sch::own_plane + 4 * node + 1 + c];
-        change = change * inverse + pull;
-        v[1 + c] = v[1 + c] * inverse + change;
-      } else {
-        v[1 + c] = v[1 + c] * inverse + pull;
-      }
+  const bool some = v[0] > grid.mass_cut_off;
+  const T inverse = some ? T(1) / v[0] : T(0);
+  for (int c = 0; c < Sch::Dim; ++c) {
+    const T pull = some ? grid.gravity_step[c] : T(0);
+    if constexpr (Sch::flip) {
+      change[1 + c] = change[1 + c] * inverse + pull;
+      v[1 + c] = v[1 + c] * inverse + change[1 + c];
+    } else {
+      v[1 + c] = v[1 + c] * inverse + pull;
     }
   }
+}
+
+/// The same for the nodes of a block.
+template <class Sch>
+void update_nodes(typename Sch::T* own, const GridConstants<typename Sch::T, Sch::Dim>& grid) {
+  for (int node = 0; node < Sch::Shape::cells; ++node)
+    update_node<Sch>(own + 4 * node, own + (Sch::planes - 1) * Sch::own_plane + 4 * node, grid);
 }
 
 }  // namespace jaxmpm

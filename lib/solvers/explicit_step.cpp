@@ -1,7 +1,6 @@
 #include "solvers/explicit_step.hpp"
 
 #include <chrono>
-#include <sstream>
 
 #include "core/error.hpp"
 #include "core/parallel.hpp"
@@ -58,35 +57,10 @@ ExplicitStep<T, Dim>::ExplicitStep(const Model& model)
   grid_.record_contact(model.account_energy);
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     materials_.push_back(make_material_kernel<T, Dim>(model_.bodies[b].material));
-    seed(b);
+    bodies_[b] = first_particles<T, Dim>(model_, model_.bodies[b], *materials_[b], numbers_.fastest);
     model_.bodies[b].initial = {};  // now in the particles
   }
   sort();
-}
-
-template <class T, int Dim>
-void ExplicitStep<T, Dim>::seed(std::size_t body) {
-  const BodyState& initial = model_.bodies[body].initial;
-  const MaterialKernel<T, Dim>& material = *materials_[body];
-  Particles<T, Dim>& p = bodies_[body];
-  const std::size_t n = initial.id.size(), history = std::size_t(material.history_size());
-  const bool affine = model_.method.transfer == deck::Transfer::apic || model_.method.transfer == deck::Transfer::tpic;
-  const auto zeros = [&](std::size_t arrays) { return std::vector<Array<T>>(arrays, Array<T>(n, T(0))); };
-  p.position.assign(Dim, Array<double>(n)), p.velocity = zeros(Dim);
-  p.mass.resize(n), p.compression.resize(n), p.id.assign(initial.id.begin(), initial.id.end());
-  p.affine = zeros(affine ? Dim * Dim : 0), p.history = zeros(history);
-  p.gradient = zeros(model_.record_velocity_gradient ? Dim * Dim : 0);
-  std::vector<double> h(history + 1);
-  for (std::size_t a = 0; a < n; ++a) {
-    for (std::size_t d = 0; d < Dim; ++d) p.position[d][a] = initial.position[a][d], p.velocity[d][a] = T(initial.velocity[a][d]);
-    p.mass[a] = T(initial.mass[a]), p.compression[a] = T(initial.compression[a]);
-    const std::array<double, 6> stress = initial.stress.empty() ? std::array<double, 6>{} : initial.stress[a];
-    material.start(stress.data(), initial.compression[a], h.data());
-    for (std::size_t k = 0; k < history; ++k) p.history[k][a] = T(h[k]);
-    double speed2 = 0;
-    for (std::size_t d = 0; d < Dim; ++d) speed2 += initial.velocity[a][d] * initial.velocity[a][d];
-    fastest_ = std::max(fastest_, std::sqrt(speed2) + material.wave_speed(initial.compression[a], h.data()));
-  }
 }
 
 template <class T, int Dim>
@@ -95,7 +69,7 @@ void ExplicitStep<T, Dim>::sort() {
   blocks_.tiles.clear(), tile_key_.clear();
   for (std::size_t b = 0; b < bodies_.size(); ++b) kernels_.sort(bodies_[b], std::uint32_t(b), extent_, scratch_, blocks_.tiles, tile_key_);
   rebuild_blocks();
-  drift_ = 0;
+  numbers_.drift = 0;
 }
 
 template <class T, int Dim>
@@ -144,15 +118,15 @@ template <class T, int Dim>
 void ExplicitStep<T, Dim>::collect(double dt) {
   double moved = 0;
   bool sound = true;
-  fastest_ = 0, last_dt_ = dt;
+  numbers_.fastest = 0, numbers_.last_dt = dt;
   for (const TileReport& r : reports_) {
-    fastest_ = std::max(fastest_, r.fastest), moved = std::max(moved, r.displacement);
-    dissipation_.plastic += r.plastic, dissipation_.viscous += r.viscous;
+    numbers_.fastest = std::max(numbers_.fastest, r.fastest), moved = std::max(moved, r.displacement);
+    numbers_.dissipation.plastic += r.plastic, numbers_.dissipation.viscous += r.viscous;
     sound = sound && r.sound;
   }
   if (!sound) report_failure();
-  drift_ += moved;
-  if (model_.account_energy) dissipation_.friction += grid_.contact().friction;
+  numbers_.drift += moved;
+  if (model_.account_energy) numbers_.dissipation.friction += grid_.contact().friction;
 }
 
 template <class T, int Dim>
@@ -160,33 +134,14 @@ void ExplicitStep<T, Dim>::report_failure() const {
   for (std::size_t t = 0; t < reports_.size(); ++t) {
     if (reports_[t].sound) continue;
     const Tile& tile = blocks_.tiles[t];
-    const Particles<T, Dim>& p = bodies_[tile.body];
-    for (std::size_t a = tile.begin; a < tile.end; ++a) {
-      bool inside = true, finite = std::isfinite(p.compression[a]) && p.compression[a] > T(-1) && p.compression[a] < T(1e6);
-      std::ostringstream place;
-      for (std::size_t d = 0; d < Dim; ++d) {
-        const double X = p.position[d][a];
-        inside = inside && X >= 0 && X <= domain_.cells[d], finite = finite && std::isfinite(X) && std::isfinite(p.velocity[d][a]);
-        place << (d ? ", " : "") << model_.domain_min[d] + X * model_.cell_size;
-      }
-      for (const auto& h : p.history) finite = finite && std::isfinite(h[a]);
-      if (inside && finite) continue;
-      std::ostringstream text;
-      text << "particle " << p.id[a] << " of body \"" << model_.bodies[tile.body].name << "\" at (" << place.str() << ") "
-           << (finite ? "has left the domain" : "has a state that is not finite");
-      throw NumericsError(text.str());
-    }
+    check_particles<T, Dim>(model_, model_.bodies[tile.body], bodies_[tile.body], tile.begin, tile.end);
   }
   throw NumericsError("a wave speed is not finite");
 }
 
 template <class T, int Dim>
 double ExplicitStep<T, Dim>::stable_step() const {
-  const double h = model_.cell_size;
-  double dt = model_.time.cfl * h / std::max(fastest_, 1e-300);
-  for (const auto& material : materials_)
-    if (material->diffusivity() > 0) dt = std::min(dt, model_.time.cfl * h * h / (2 * Dim * material->diffusivity()));
-  return dt;
+  return jaxmpm::stable_step<T, Dim>(model_, materials_, numbers_.fastest);
 }
 
 template <class T, int Dim>
@@ -213,13 +168,32 @@ template <class T, int Dim>
 ContactForces ExplicitStep<T, Dim>::forces() const {
   ContactForces forces;
   forces.obstacle.resize(model_.obstacles.size());
-  if (!record_forces_ || !(last_dt_ > 0)) return forces;
+  if (!record_forces_ || !(numbers_.last_dt > 0)) return forces;
   const BlockContact contact = grid_.contact();
   for (std::size_t f = 0; f < 6; ++f)
-    for (std::size_t c = 0; c < 3; ++c) forces.face[f][c] = contact.face[f][c] / last_dt_;
+    for (std::size_t c = 0; c < 3; ++c) forces.face[f][c] = contact.face[f][c] / numbers_.last_dt;
   for (std::size_t o = 0; o < forces.obstacle.size(); ++o)
-    for (std::size_t c = 0; c < 3; ++c) forces.obstacle[o][c] = contact.obstacle[o][c] / last_dt_;
+    for (std::size_t c = 0; c < 3; ++c) forces.obstacle[o][c] = contact.obstacle[o][c] / numbers_.last_dt;
   return forces;
+}
+
+template <class T, int Dim>
+std::vector<BodySnapshot> ExplicitStep<T, Dim>::snapshot(const FieldSelection& fields, bool ordered) const {
+  std::vector<BodySnapshot> out;
+  for (std::size_t b = 0; b < bodies_.size(); ++b)
+    out.push_back(body_snapshot<T, Dim>(model_, model_.bodies[b], *materials_[b], bodies_[b], fields, ordered));
+  return out;
+}
+
+template <class T, int Dim>
+std::vector<RawArray> ExplicitStep<T, Dim>::save() const {
+  return save_state<T, Dim>(bodies_, blocks_.tiles, tile_key_, numbers_);
+}
+
+template <class T, int Dim>
+void ExplicitStep<T, Dim>::restore(const std::vector<RawArray>& arrays) {
+  restore_state<T, Dim>(arrays, bodies_, blocks_.tiles, tile_key_, numbers_);
+  rebuild_blocks();
 }
 
 template class ExplicitStep<float, 2>;

@@ -2,6 +2,7 @@
 // The explicit stepper on the host (Du & He 2025, Eqs 9–18), one instance per precision and dimension.
 #include "kernels/g2p.hpp"
 #include "solvers/grid_update.hpp"
+#include "solvers/particle_state.hpp"
 
 namespace jaxmpm {
 
@@ -17,7 +18,7 @@ class ExplicitStep final : public Solver {
   std::vector<BodySnapshot> snapshot(const FieldSelection& fields, bool ordered) const override;
   void record_forces(bool on) override;
   ContactForces forces() const override;
-  Dissipation dissipation() const override { return dissipation_; }
+  Dissipation dissipation() const override { return numbers_.dissipation; }
   std::vector<RawArray> save() const override;
   void restore(const std::vector<RawArray>& arrays) override;
   double bytes_per_particle() const override;
@@ -29,8 +30,7 @@ class ExplicitStep final : public Solver {
   /// stencil with their neighbours.
   static constexpr double sort_after = 0.3;
 
-  void seed(std::size_t body);
-  bool sort_is_due() const { return drift_ > sort_after; }
+  bool sort_is_due() const { return numbers_.drift > sort_after; }
   void sort();
   void rebuild_blocks();
   void p2g();
@@ -42,7 +42,7 @@ class ExplicitStep final : public Solver {
 
   Model model_;
   StepKernels<T, Dim> kernels_;
-  std::vector<std::unique_ptr<MaterialKernel<T, Dim>>> materials_;  // [body]
+  MaterialKernels<T, Dim> materials_;
   std::vector<Particles<T, Dim>> bodies_;
   Index<Dim> extent_;
   DomainBounds<Dim> domain_;
@@ -55,11 +55,8 @@ class ExplicitStep final : public Solver {
   StepConstants<T> constants_;
   std::vector<TileReport> reports_;
 
-  double drift_ = 0;    // cells, since the last sort
-  double fastest_ = 0;  // m/s, largest c + |v| of the present state
-  double last_dt_ = 0;
+  StepNumbers numbers_;
   bool record_forces_ = false;
-  Dissipation dissipation_;
   PhaseSeconds seconds_;
 };
 

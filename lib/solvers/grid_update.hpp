@@ -1,14 +1,12 @@
 #pragma once
-// The grid update of a step (Eqs 13–15): which blocks touch walls and obstacles, and what those do to the nodes of a block.
-#include <memory>
-#include <unordered_map>
-
+// The grid update of a step on the host (Eqs 13–15): sums of the arenas, and what walls and obstacles do to the nodes of a block.
 #include "kernels/step_kernels.hpp"
+#include "solvers/contact_blocks.hpp"
 #include "solvers/solver.hpp"
 
 namespace jaxmpm {
 
-/// What contact did in one block during one step: impulses on the material, N s, and friction, J.
+/// What contact did in one block, or in all, during one step: impulses on the material, N s, and friction, J.
 struct BlockContact {
   std::array<Point, 6> face{};
   std::vector<Point> obstacle;
@@ -33,24 +31,19 @@ class GridUpdate {
 
  private:
   using Node = Index<Dim>;
-  static constexpr int B = BlockShape<Dim, 2>::B, cells = BlockShape<Dim, 2>::cells, around = BlockShape<Dim, 2>::neighbours;
-  using ObstacleNodes = std::vector<ObstacleNode<T, Dim>>;
+  static constexpr int cells = BlockShape<Dim, 2>::cells, around = BlockShape<Dim, 2>::neighbours;
 
   void update_block(const Blocks<Dim>& blocks, std::size_t b, const T* arenas, const GridConstants<T, Dim>& constants);
   void update_wall_block(const Blocks<Dim>& blocks, std::size_t b, const GridConstants<T, Dim>& constants);
   void apply_obstacles(std::size_t b);
-  std::shared_ptr<const ObstacleNodes> obstacle_nodes(const Node& block);
-  bool at_wall(const Node& block) const;
+  void record(std::size_t b, std::uint32_t obstacle, const ObstacleContact<T, Dim>& done);
 
   const Model& model_;
   StepKernels<T, Dim> kernels_;
+  ContactBlocks<T, Dim> contact_blocks_;
   Walls<T, Dim> walls_;
   T mass_cut_off_;
-  Array<T> grid_, raw_;         // [block][own], [wall block][own]
-  std::vector<int> wall_slot_;  // [block] place in raw_, −1 away from walls
-  std::vector<std::uint32_t> wall_blocks_;
-  std::vector<std::shared_ptr<const ObstacleNodes>> obstacles_;                   // [block], null where there are none
-  std::unordered_map<std::int64_t, std::shared_ptr<const ObstacleNodes>> known_;  // by block coordinates: obstacles stand still
+  Array<T> grid_, raw_;  // [block][own], [wall block][own]
   bool recording_ = false;
   std::vector<BlockContact> contact_;  // [block]
 };

@@ -1,0 +1,228 @@
+#include "solvers/particle_state.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <numeric>
+#include <sstream>
+
+#include "core/error.hpp"
+#include "core/parallel.hpp"
+
+namespace jaxmpm {
+namespace {
+
+template <class Value>
+const char* type_name() {
+  if constexpr (std::is_same_v<Value, float>) return "f4";
+  else if constexpr (std::is_same_v<Value, double>) return "f8";
+  else if constexpr (std::is_same_v<Value, std::uint32_t>) return "u4";
+  else return "i8";
+}
+
+template <class Value>
+RawArray pack_array(const std::string& name, const Value* data, std::size_t n) {
+  RawArray array{name, type_name<Value>(), {n}, std::vector<unsigned char>(n * sizeof(Value))};
+  if (n > 0) std::memcpy(array.bytes.data(), data, array.bytes.size());
+  return array;
+}
+
+const RawArray& find_array(const std::vector<RawArray>& arrays, const std::string& name) {
+  const auto at = std::find_if(arrays.begin(), arrays.end(), [&](const RawArray& a) { return a.name == name; });
+  if (at == arrays.end()) throw IoError("the checkpoint has no array \"" + name + "\"; it is of another deck, or damaged");
+  return *at;
+}
+
+/// Copies an array of a checkpoint to `out`, which has the size that the model asks for.
+template <class Container>
+void unpack_array(const std::vector<RawArray>& arrays, const std::string& name, Container& out) {
+  using Value = typename Container::value_type;
+  const RawArray& array = find_array(arrays, name);
+  if (array.type != type_name<Value>() || array.bytes.size() != out.size() * sizeof(Value))
+    throw IoError("array \"" + name +
+                  "\" of the checkpoint has another type or length than this deck's; it is of another deck, or damaged");
+  if (!out.empty()) std::memcpy(out.data(), array.bytes.data(), array.bytes.size());
+}
+
+std::string field_name(std::size_t body, const std::string& field) { return "body" + std::to_string(body) + "_" + field; }
+
+}  // namespace
+
+template <class T, int Dim>
+Particles<T, Dim> first_particles(const Model& model, const Body& body, const MaterialKernel<T, Dim>& material, double& fastest) {
+  const BodyState& initial = body.initial;
+  Particles<T, Dim> p;
+  const std::size_t n = initial.id.size(), history = std::size_t(material.history_size());
+  const bool affine = model.method.transfer == deck::Transfer::apic || model.method.transfer == deck::Transfer::tpic;
+  const auto zeros = [&](std::size_t arrays) { return std::vector<Array<T>>(arrays, Array<T>(n, T(0))); };
+  p.position.assign(Dim, Array<double>(n)), p.velocity = zeros(Dim);
+  p.mass.resize(n), p.compression.resize(n), p.id.assign(initial.id.begin(), initial.id.end());
+  p.affine = zeros(affine ? Dim * Dim : 0), p.history = zeros(history);
+  p.gradient = zeros(model.record_velocity_gradient ? Dim * Dim : 0);
+  std::vector<double> h(history + 1);
+  for (std::size_t a = 0; a < n; ++a) {
+    for (std::size_t d = 0; d < Dim; ++d) p.position[d][a] = initial.position[a][d], p.velocity[d][a] = T(initial.velocity[a][d]);
+    p.mass[a] = T(initial.mass[a]), p.compression[a] = T(initial.compression[a]);
+    const std::array<double, 6> stress = initial.stress.empty() ? std::array<double, 6>{} : initial.stress[a];
+    material.start(stress.data(), initial.compression[a], h.data());
+    for (std::size_t k = 0; k < history; ++k) p.history[k][a] = T(h[k]);
+    double speed2 = 0;
+    for (std::size_t d = 0; d < Dim; ++d) speed2 += initial.velocity[a][d] * initial.velocity[a][d];
+    fastest = std::max(fastest, std::sqrt(speed2) + material.wave_speed(initial.compression[a], h.data()));
+  }
+  return p;
+}
+
+template <class T, int Dim>
+double stable_step(const Model& model, const MaterialKernels<T, Dim>& materials, double fastest) {
+  const double h = model.cell_size;
+  double dt = model.time.cfl * h / std::max(fastest, 1e-300);
+  for (const auto& material : materials)
+    if (material->diffusivity() > 0) dt = std::min(dt, model.time.cfl * h * h / (2 * Dim * material->diffusivity()));
+  return dt;
+}
+
+template <class T, int Dim>
+BodySnapshot body_snapshot(const Model& model, const Body& body, const MaterialKernel<T, Dim>& material, const Particles<T, Dim>& p,
+                           const FieldSelection& fields, bool ordered) {
+  const std::size_t n = p.count(), history = std::size_t(material.history_size());
+  std::vector<std::uint32_t> place(n);  // of each storage slot in the snapshot
+  std::iota(place.begin(), place.end(), 0u);
+  if (ordered && n > 0) {  // ids of a body are consecutive
+    const std::uint32_t first = *std::min_element(p.id.begin(), p.id.end());
+    for (std::size_t a = 0; a < n; ++a) place[a] = p.id[a] - first;
+  }
+  BodySnapshot s;
+  const bool stress = fields.stress || fields.pressure;
+  s.id.resize(n), s.position.resize(n * Dim), s.mass.resize(n);
+  s.velocity.resize(fields.velocity ? n * Dim : 0);
+  s.density.resize(fields.density ? n : 0), s.volume.resize(n);
+  s.pressure.resize(fields.pressure ? n : 0), s.stress.resize(fields.stress ? n * 6 : 0);
+  s.velocity_gradient.resize(fields.velocity_gradient ? n * Dim * Dim : 0);
+  s.plastic_strain.resize(fields.plastic_strain ? n : 0), s.strain_energy.resize(fields.energy ? n : 0);
+  const double rho0 = std::visit([](const auto& m) { return m.density; }, body.material);
+  parallel_for_host_static("jaxmpm::snapshot", n, [&](std::size_t a) {
+    const std::size_t i = place[a];
+    const double e = double(p.compression[a]), mass = double(p.mass[a]), density = rho0 * (1 + e);
+    s.id[i] = p.id[a], s.mass[i] = mass, s.volume[i] = mass / density;
+    for (std::size_t d = 0; d < Dim; ++d) {
+      s.position[i * Dim + d] = model.domain_min[d] + p.position[d][a] * model.cell_size;
+      if (fields.velocity) s.velocity[i * Dim + d] = double(p.velocity[d][a]);
+    }
+    if (fields.density) s.density[i] = density;
+    if (fields.velocity_gradient)
+      for (std::size_t k = 0; k < Dim * Dim; ++k)
+        s.velocity_gradient[i * Dim * Dim + k] = p.gradient.empty() ? 0.0 : double(p.gradient[k][a]);
+    if (!stress && !fields.energy && !fields.plastic_strain) return;
+    double state[16] = {};
+    for (std::size_t k = 0; k < history; ++k) state[k] = double(p.history[k][a]);
+    if (stress) {
+      double sigma[6];
+      material.stress(e, state, sigma);
+      if (fields.pressure) s.pressure[i] = -(sigma[0] + sigma[1] + sigma[2]) / 3;
+      if (fields.stress) std::copy(sigma, sigma + 6, s.stress.begin() + std::ptrdiff_t(i) * 6);
+    }
+    if (fields.plastic_strain) s.plastic_strain[i] = material.plastic_strain_index() < 0 ? 0.0 : state[material.plastic_strain_index()];
+    if (fields.energy) s.strain_energy[i] = material.energy(e, state) * s.volume[i];
+  });
+  return s;
+}
+
+template <class T, int Dim>
+std::vector<RawArray> save_state(const std::vector<Particles<T, Dim>>& bodies, const std::vector<Tile>& tiles,
+                                 const std::vector<std::int64_t>& tile_key, const StepNumbers& numbers) {
+  std::vector<RawArray> arrays;
+  for (std::size_t b = 0; b < bodies.size(); ++b)
+    bodies[b].for_each_field(
+        [&](const std::string& name, const auto& field) { arrays.push_back(pack_array(field_name(b, name), field.data(), field.size())); });
+  std::vector<std::int64_t> rows;
+  for (std::size_t t = 0; t < tiles.size(); ++t)
+    rows.insert(rows.end(), {std::int64_t(tiles[t].body), tile_key[t], std::int64_t(tiles[t].begin), std::int64_t(tiles[t].end)});
+  arrays.push_back(pack_array("tiles", rows.data(), rows.size()));
+  const Dissipation& lost = numbers.dissipation;
+  const double values[] = {numbers.drift, numbers.fastest, numbers.last_dt, lost.plastic, lost.viscous, lost.friction};
+  arrays.push_back(pack_array("numbers", values, std::size(values)));
+  return arrays;
+}
+
+template <class T, int Dim>
+void restore_state(const std::vector<RawArray>& arrays, std::vector<Particles<T, Dim>>& bodies, std::vector<Tile>& tiles,
+                   std::vector<std::int64_t>& tile_key, StepNumbers& numbers) {
+  std::size_t particles = 0, covered = 0;
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    bodies[b].for_each_field([&](const std::string& name, auto& field) { unpack_array(arrays, field_name(b, name), field); });
+    particles += bodies[b].count();
+  }
+  std::vector<std::int64_t> rows(find_array(arrays, "tiles").bytes.size() / sizeof(std::int64_t));
+  unpack_array(arrays, "tiles", rows);
+  std::array<double, 6> values{};
+  unpack_array(arrays, "numbers", values);
+  numbers = {values[0], values[1], values[2], {values[3], values[4], values[5]}};
+  tiles.clear(), tile_key.clear();
+  for (std::size_t t = 0; t + 3 < rows.size(); t += 4) {
+    const Tile tile{std::uint32_t(rows[t]), 0, std::size_t(rows[t + 2]), std::size_t(rows[t + 3])};
+    if (tile.body >= bodies.size() || tile.begin > tile.end || tile.end > bodies[tile.body].count())
+      throw IoError("the tiles of the checkpoint do not fit its particles; it is damaged");
+    tiles.push_back(tile), tile_key.push_back(rows[t + 1]);
+    covered += tile.end - tile.begin;
+  }
+  if (covered != particles) throw IoError("the tiles of the checkpoint do not cover its particles; it is damaged");
+}
+
+template <class T, int Dim>
+void check_particles(const Model& model, const Body& body, const Particles<T, Dim>& p, std::size_t begin, std::size_t end) {
+  for (std::size_t a = begin; a < end; ++a) {
+    bool inside = true, finite = std::isfinite(p.compression[a]) && p.compression[a] > T(-1) && p.compression[a] < T(1e6);
+    std::ostringstream place;
+    for (std::size_t d = 0; d < Dim; ++d) {
+      const double X = p.position[d][a];
+      inside = inside && X >= 0 && X <= model.cells[d], finite = finite && std::isfinite(X) && std::isfinite(p.velocity[d][a]);
+      place << (d ? ", " : "") << model.domain_min[d] + X * model.cell_size;
+    }
+    for (const auto& h : p.history) finite = finite && std::isfinite(h[a]);
+    if (inside && finite) continue;
+    std::ostringstream text;
+    text << "particle " << p.id[a] << " of body \"" << body.name << "\" at (" << place.str() << ") "
+         << (finite ? "has left the domain" : "has a state that is not finite");
+    throw NumericsError(text.str());
+  }
+}
+
+template Particles<float, 2> first_particles(const Model&, const Body&, const MaterialKernel<float, 2>&, double&);
+template double stable_step(const Model&, const MaterialKernels<float, 2>&, double);
+template BodySnapshot body_snapshot(const Model&, const Body&, const MaterialKernel<float, 2>&, const Particles<float, 2>&,
+                                    const FieldSelection&, bool);
+template std::vector<RawArray> save_state(const std::vector<Particles<float, 2>>&, const std::vector<Tile>&,
+                                          const std::vector<std::int64_t>&, const StepNumbers&);
+template void restore_state(const std::vector<RawArray>&, std::vector<Particles<float, 2>>&, std::vector<Tile>&, std::vector<std::int64_t>&,
+                            StepNumbers&);
+template void check_particles(const Model&, const Body&, const Particles<float, 2>&, std::size_t, std::size_t);
+template Particles<float, 3> first_particles(const Model&, const Body&, const MaterialKernel<float, 3>&, double&);
+template double stable_step(const Model&, const MaterialKernels<float, 3>&, double);
+template BodySnapshot body_snapshot(const Model&, const Body&, const MaterialKernel<float, 3>&, const Particles<float, 3>&,
+                                    const FieldSelection&, bool);
+template std::vector<RawArray> save_state(const std::vector<Particles<float, 3>>&, const std::vector<Tile>&,
+                                          const std::vector<std::int64_t>&, const StepNumbers&);
+template void restore_state(const std::vector<RawArray>&, std::vector<Particles<float, 3>>&, std::vector<Tile>&, std::vector<std::int64_t>&,
+                            StepNumbers&);
+template void check_particles(const Model&, const Body&, const Particles<float, 3>&, std::size_t, std::size_t);
+template Particles<double, 2> first_particles(const Model&, const Body&, const MaterialKernel<double, 2>&, double&);
+template double stable_step(const Model&, const MaterialKernels<double, 2>&, double);
+template BodySnapshot body_snapshot(const Model&, const Body&, const MaterialKernel<double, 2>&, const Particles<double, 2>&,
+                                    const FieldSelection&, bool);
+template std::vector<RawArray> save_state(const std::vector<Particles<double, 2>>&, const std::vector<Tile>&,
+                                          const std::vector<std::int64_t>&, const StepNumbers&);
+template void restore_state(const std::vector<RawArray>&, std::vector<Particles<double, 2>>&, std::vector<Tile>&,
+                            std::vector<std::int64_t>&, StepNumbers&);
+template void check_particles(const Model&, const Body&, const Particles<double, 2>&, std::size_t, std::size_t);
+template Particles<double, 3> first_particles(const Model&, const Body&, const MaterialKernel<double, 3>&, double&);
+template double stable_step(const Model&, const MaterialKernels<double, 3>&, double);
+template BodySnapshot body_snapshot(const Model&, const Body&, const MaterialKernel<double, 3>&, const Particles<double, 3>&,
+                                    const FieldSelection&, bool);
+template std::vector<RawArray> save_state(const std::vector<Particles<double, 3>>&, const std::vector<Tile>&,
+                                          const std::vector<std::int64_t>&, const StepNumbers&);
+template void restore_state(const std::vector<RawArray>&, std::vector<Particles<double, 3>>&, std::vector<Tile>&,
+                            std::vector<std::int64_t>&, StepNumbers&);
+template void check_particles(const Model&, const Body&, const Particles<double, 3>&, std::size_t, std::size_t);
+
+}  // namespace jaxmpm
