@@ -121,7 +121,12 @@ class Builder : public nlohmann::json_sax<Json> {
     return true;
   }
   bool open(Json value) {
+    constexpr std::size_t deepest = 100;  // no deck needs more; the readers above go down by recursion
     const std::string at = pointer();
+    if (levels_.size() >= deepest) {
+      syntax = Problem{"", progress_.line, "objects and lists are nested more than " + std::to_string(deepest) + " deep; remove some"};
+      return false;
+    }
     levels_.push_back({insert(std::move(value), progress_.line), at, {}});
     return true;
   }
