@@ -81,8 +81,8 @@ void write_checkpoint(const std::string& path, const Checkpoint& checkpoint) {
   file.attribute("/", "format", checkpoint_format);
   file.attribute("/", "version", provenance().version);
   file.attribute("/", "git_commit", provenance().git_commit);
-  file.attribute("/", "backend", checkpoint.backend);
-  file.attribute("/", "deck_resolved", checkpoint.deck);
+  file.text("/backend", checkpoint.backend);
+  file.text("/deck_resolved", checkpoint.deck);
   file.attribute("/", "step", checkpoint.at.step);
   file.attribute("/", "time", checkpoint.at.time);
   file.attribute("/", "dt", checkpoint.at.dt);
@@ -95,8 +95,8 @@ void write_checkpoint(const std::string& path, const Checkpoint& checkpoint) {
   for (std::size_t n = 0; n < checkpoint.state.size(); ++n) {
     const RawArray& array = checkpoint.state[n];
     const std::string place = "/state/" + frame_name(n);  // the solver's own names may hold slashes
-    file.dataset(place, array.type, array.shape, array.bytes.data(), hdf5::Storage::checked);
-    file.attribute(place, "name", array.name);
+    file.text(place + "/name", array.name);
+    file.dataset(place + "/values", array.type, array.shape, array.bytes.data(), hdf5::Storage::checked);
   }
   file.finish();
 }
@@ -111,13 +111,14 @@ Checkpoint read_checkpoint(const std::string& path) {
   found.at = {file.count_attribute("/", "step"), file.number_attribute("/", "time"), file.number_attribute("/", "dt"),
               file.number_attribute("/", "before")};
   found.seconds = file.number_attribute("/", "seconds");
-  found.deck = file.text_attribute("/", "deck_resolved");
-  found.backend = file.text_attribute("/", "backend");
+  found.deck = file.text("/deck_resolved");
+  found.backend = file.text("/backend");
   found.frames = read_frames(file);
   for (const std::string& name : file.names("/gauges")) found.gauges[name] = read_gauge(file, "/gauges/" + name);
   for (const std::string& name : file.names("/state")) {
     const std::string place = "/state/" + name;
-    found.state.push_back({file.text_attribute(place, "name"), file.type(place), file.shape(place), file.bytes(place)});
+    found.state.push_back(
+        {file.text(place + "/name"), file.type(place + "/values"), file.shape(place + "/values"), file.bytes(place + "/values")});
   }
   return found;
 }

@@ -49,6 +49,8 @@ class Writer {
                Storage storage = Storage::plain);
   void dataset(const std::string& name, const std::vector<std::size_t>& shape, const std::vector<double>& values,
                Storage storage = Storage::plain);
+  /// Text as a checked dataset of bytes; an attribute's text has no checksum.
+  void text(const std::string& name, const std::string& value);
   /// A link to an object of another file; `file` is relative to this one's directory.
   void external_link(const std::string& name, const std::string& file, const std::string& object);
   void finish();
@@ -77,6 +79,7 @@ class Reader {
   std::vector<double> numbers(const std::string& dataset) const;
   std::vector<std::uint64_t> counts(const std::string& dataset) const;
   std::vector<unsigned char> bytes(const std::string& dataset) const;  ///< as stored
+  std::string text(const std::string& dataset) const;
 
  private:
   Handle open(const std::string& dataset) const;

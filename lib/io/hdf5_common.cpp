@@ -37,7 +37,10 @@ std::string last_reason() {
 hid_t native_type(const std::string& type) {
   static const std::map<std::string, hid_t> types{{"f4", H5T_NATIVE_FLOAT},  {"f8", H5T_NATIVE_DOUBLE}, {"u1", H5T_NATIVE_UINT8},
                                                   {"u4", H5T_NATIVE_UINT32}, {"i8", H5T_NATIVE_INT64},  {"u8", H5T_NATIVE_UINT64}};
-  return types.at(type);
+  const auto found = types.find(type);
+  if (found == types.end())
+    throw IoError("a dataset has the type " + type + ", which is none of jaxmpm's; the file is damaged or of another kind.");
+  return found->second;
 }
 
 std::size_t type_size(const std::string& type) { return static_cast<std::size_t>(type[1] - '0'); }

@@ -107,4 +107,9 @@ std::vector<unsigned char> Reader::bytes(const std::string& dataset) const {
   return values;
 }
 
+std::string Reader::text(const std::string& dataset) const {
+  const std::vector<unsigned char> stored = bytes(dataset);
+  return {stored.begin(), stored.end()};
+}
+
 }  // namespace jaxmpm::hdf5

@@ -7,7 +7,7 @@ namespace {
 
 Handle file_properties() {
   Handle properties(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-  H5Pset_libver_bounds(properties, H5F_LIBVER_V18, H5F_LIBVER_LATEST);  // the newer layout has checksums over its own tables
+  H5Pset_libver_bounds(properties, H5F_LIBVER_V110, H5F_LIBVER_LATEST);  // this layout has checksums over its own tables
   H5Pset_fclose_degree(properties, H5F_CLOSE_STRONG);
   return properties;
 }
@@ -99,6 +99,10 @@ void Writer::dataset(const std::string& name, const std::string& type, const std
 
 void Writer::dataset(const std::string& name, const std::vector<std::size_t>& shape, const std::vector<double>& values, Storage storage) {
   dataset(name, "f8", shape, values.data(), storage);
+}
+
+void Writer::text(const std::string& name, const std::string& value) {
+  dataset(name, "u1", {value.size()}, value.data(), Storage::checked);
 }
 
 void Writer::external_link(const std::string& name, const std::string& file, const std::string& object) {

@@ -1,5 +1,6 @@
 #include "io/vtk.hpp"
 
+#include <spdlog/fmt/fmt.h>
 #include <vtkCellArray.h>
 #include <vtkDoubleArray.h>
 #include <vtkFieldData.h>
@@ -75,10 +76,7 @@ void add_field(vtkPolyData* data, const OutputField& field, const std::vector<Bo
 }
 
 std::string series_entry(double time, const std::string& part, int number, const std::string& file) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%.17g", time);
-  return std::string("    <DataSet timestep=\"") + text + "\" group=\"" + part + "\" part=\"" + std::to_string(number) + "\" file=\"" +
-         file + "\"/>\n";
+  return fmt::format("    <DataSet timestep=\"{}\" group=\"{}\" part=\"{}\" file=\"{}\"/>\n", time, part, number, file);
 }
 
 }  // namespace
