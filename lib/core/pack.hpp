@@ -144,30 +144,51 @@ JAXMPM_INLINE void static_for(F&& f) {
 }
 
 namespace pack_detail {
+// Shuffles of a and b, lane(i) being where lane i comes from (0 … N−1: a, N … 2N−1: b). The lanes are written out, as nvcc's host side
+// loses the expansion of a parameter pack in the compiler's own function.
+#define JAXMPM_LANES_2(lane, i) lane(i), lane(i + 1)
+#define JAXMPM_LANES_4(lane, i) JAXMPM_LANES_2(lane, i), JAXMPM_LANES_2(lane, i + 2)
+#define JAXMPM_LANES_8(lane, i) JAXMPM_LANES_4(lane, i), JAXMPM_LANES_4(lane, i + 4)
+#define JAXMPM_LANES_16(lane, i) JAXMPM_LANES_8(lane, i), JAXMPM_LANES_8(lane, i + 8)
+#define JAXMPM_SHUFFLE(a, b, lane)                                                                          \
+  if constexpr (N == 2) return Pack<T, N>(__builtin_shufflevector(a.v, b.v, JAXMPM_LANES_2(lane, 0)));      \
+  else if constexpr (N == 4) return Pack<T, N>(__builtin_shufflevector(a.v, b.v, JAXMPM_LANES_4(lane, 0))); \
+  else if constexpr (N == 8) return Pack<T, N>(__builtin_shufflevector(a.v, b.v, JAXMPM_LANES_8(lane, 0))); \
+  else return Pack<T, N>(__builtin_shufflevector(a.v, b.v, JAXMPM_LANES_16(lane, 0)));
+#define JAXMPM_INTERLEAVED(i) (Half * (N / 2) + (i) / 2 + (i) % 2 * N)
+#define JAXMPM_REPEATED(i) (Offset + (i) % 4)
+#define JAXMPM_SPREAD(i) (Offset + (i) / 4)
 /// {a[h], b[h], a[h+1], b[h+1], …} with h = 0 (Half 0) or N/2 (Half 1).
-template <int Half, class T, int N, int... I>
-JAXMPM_INLINE Pack<T, N> interleave(Pack<T, N> a, Pack<T, N> b, std::integer_sequence<int, I...>) {
-  return Pack<T, N>(__builtin_shufflevector(a.v, b.v, (Half * (N / 2) + I / 2 + (I % 2) * N)...));
+template <int Half, class T, int N>
+JAXMPM_INLINE Pack<T, N> interleave(Pack<T, N> a, Pack<T, N> b) {
+  JAXMPM_SHUFFLE(a, b, JAXMPM_INTERLEAVED)
 }
-template <int Offset, class T, int N, int... I>
-JAXMPM_INLINE Pack<T, N> repeat_quad(Pack<T, N> a, std::integer_sequence<int, I...>) {
-  return Pack<T, N>(__builtin_shufflevector(a.v, a.v, (Offset + I % 4)...));
+template <int Offset, class T, int N>
+JAXMPM_INLINE Pack<T, N> repeat_quad(Pack<T, N> a) {
+  JAXMPM_SHUFFLE(a, a, JAXMPM_REPEATED)
 }
-template <int Offset, class T, int N, int... I>
-JAXMPM_INLINE Pack<T, N> spread_quad(Pack<T, N> a, std::integer_sequence<int, I...>) {
-  return Pack<T, N>(__builtin_shufflevector(a.v, a.v, (Offset + I / 4)...));
+template <int Offset, class T, int N>
+JAXMPM_INLINE Pack<T, N> spread_quad(Pack<T, N> a) {
+  JAXMPM_SHUFFLE(a, a, JAXMPM_SPREAD)
 }
+#undef JAXMPM_SPREAD
+#undef JAXMPM_REPEATED
+#undef JAXMPM_INTERLEAVED
+#undef JAXMPM_SHUFFLE
+#undef JAXMPM_LANES_16
+#undef JAXMPM_LANES_8
+#undef JAXMPM_LANES_4
+#undef JAXMPM_LANES_2
 }  // namespace pack_detail
 
 /// Transposes N packs of N lanes in place: log2 N rounds of perfect shuffles.
 template <class T, int N>
 JAXMPM_INLINE void transpose(Pack<T, N>* r) {
-  constexpr auto lanes = std::make_integer_sequence<int, N>{};
   for (int round = 1; round < N; round *= 2) {
     Pack<T, N> t[N];
     for (int i = 0; i < N / 2; ++i) {
-      t[2 * i] = pack_detail::interleave<0>(r[i], r[i + N / 2], lanes);
-      t[2 * i + 1] = pack_detail::interleave<1>(r[i], r[i + N / 2], lanes);
+      t[2 * i] = pack_detail::interleave<0>(r[i], r[i + N / 2]);
+      t[2 * i + 1] = pack_detail::interleave<1>(r[i], r[i + N / 2]);
     }
     for (int i = 0; i < N; ++i) r[i] = t[i];
   }
@@ -178,7 +199,7 @@ template <int K, int N, class T>
 JAXMPM_INLINE Pack<T, N> repeat_quad(const T* row) {
   const auto whole = Pack<T, N>::load(row + 4 * K / N * N);
   if constexpr (N == 4) return whole;
-  else return pack_detail::repeat_quad<4 * K % N>(whole, std::make_integer_sequence<int, N>{});
+  else return pack_detail::repeat_quad<4 * K % N>(whole);
 }
 
 /// Part C of quad K of a row with every value four times: {r[4K+C·N/4] ×4, r[4K+C·N/4+1] ×4, …}.
@@ -186,7 +207,7 @@ template <int K, int C, int N, class T>
 JAXMPM_INLINE Pack<T, N> spread_quad(const T* row) {
   constexpr int first = 4 * K + C * (N / 4);
   if constexpr (N == 4) return Pack<T, N>(row[first]);
-  else return pack_detail::spread_quad<first % N>(Pack<T, N>::load(row + first / N * N), std::make_integer_sequence<int, N>{});
+  else return pack_detail::spread_quad<first % N>(Pack<T, N>::load(row + first / N * N));
 }
 
 }  // namespace jaxmpm

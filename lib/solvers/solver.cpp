@@ -2,6 +2,9 @@
 
 #include "core/error.hpp"
 #include "solvers/explicit_step.hpp"
+#if defined(KOKKOS_ENABLE_CUDA)
+#include "solvers/cuda_solver.hpp"
+#endif
 
 namespace jaxmpm {
 namespace {
@@ -23,12 +26,19 @@ std::unique_ptr<Solver> make_host_solver(const Model& model) {
 
 }  // namespace
 
+#if defined(KOKKOS_ENABLE_CUDA)
+bool has_backend(Backend) { return true; }
+#else
 bool has_backend(Backend backend) { return backend == Backend::cpu; }
+#endif
 
 std::unique_ptr<Solver> make_solver(const Model& model, Backend backend) {
   check_extent(model);
   if (!has_backend(backend))
     throw Error(ExitCode::deck, "this program was built without CUDA; use --backend cpu, or build with scripts/build-cuda");
+#if defined(KOKKOS_ENABLE_CUDA)
+  if (backend == Backend::cuda) return make_cuda_solver(model);
+#endif
   return model.method.precision == deck::Precision::f32 ? make_host_solver<float>(model) : make_host_solver<double>(model);
 }
 

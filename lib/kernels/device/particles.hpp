@@ -1,0 +1,154 @@
+#pragma once
+// The particles of one body in a device's memory: the fields of state/particles.hpp as rows of two tables.
+#include <algorithm>
+#include <stdexcept>
+
+#include "core/parallel.hpp"
+#include "state/particles.hpp"
+
+namespace jaxmpm {
+
+/// What kernels see of the particles: plain pointers. The rows of reals are those of Particles in its order: velocity, mass, compression,
+/// affine, history, gradient.
+template <class T, int Dim>
+struct ParticleFields {
+  double* positions;  // [axis][stride], cells
+  T* reals;           // [row][stride]
+  std::uint32_t* ids;
+  std::size_t stride;
+  int first_history, first_gradient;  // rows; first_gradient is −1 where it is not kept
+
+  JAXMPM_INLINE double& position(int axis, std::size_t p) const { return positions[std::size_t(axis) * stride + p]; }
+  JAXMPM_INLINE T& row(int k, std::size_t p) const { return reals[std::size_t(k) * stride + p]; }
+  JAXMPM_INLINE T& velocity(int c, std::size_t p) const { return row(c, p); }
+  JAXMPM_INLINE T& mass(std::size_t p) const { return row(Dim, p); }
+  JAXMPM_INLINE T& compression(std::size_t p) const { return row(Dim + 1, p); }
+  JAXMPM_INLINE T& affine(int k, std::size_t p) const { return row(Dim + 2 + k, p); }
+  JAXMPM_INLINE T& history(int k, std::size_t p) const { return row(first_history + k, p); }
+  JAXMPM_INLINE T& gradient(int k, std::size_t p) const { return row(first_gradient + k, p); }
+};
+
+template <class V, class Space>
+using DeviceArray = Kokkos::View<V*, typename Space::memory_space>;
+
+namespace device_detail {
+template <class V>
+using HostArray = Kokkos::View<V*, Kokkos::HostSpace, Kokkos::MemoryTraits<Kokkos::Unmanaged>>;
+}  // namespace device_detail
+
+/// An array of `n` values that are not initialised.
+template <class V, class Space>
+DeviceArray<V, Space> device_array(const std::string& label, std::size_t n) {
+  return DeviceArray<V, Space>(Kokkos::view_alloc(Kokkos::WithoutInitializing, label), n);
+}
+
+/// Makes `array` at least `n` values long; what it held is lost when it grows.
+template <class V, class Array>
+void grow(Array& array, const std::string& label, std::size_t n) {
+  if (array.extent(0) < n) array = Array(Kokkos::view_alloc(Kokkos::WithoutInitializing, label), n + n / 8);
+}
+
+/// Copies `n` values between host and device; both wait for the device.
+template <class V, class Array>
+void copy_in(const Array& to, std::size_t first, const V* from, std::size_t n) {
+  const device_detail::HostArray<const V> source(from, n);
+  if (n > 0) Kokkos::deep_copy(Kokkos::subview(to, std::make_pair(first, first + n)), source);
+}
+template <class V, class Array>
+void copy_out(V* to, const Array& from, std::size_t first, std::size_t n) {
+  const device_detail::HostArray<V> target(to, n);
+  if (n > 0) Kokkos::deep_copy(target, Kokkos::subview(from, std::make_pair(first, first + n)));
+}
+
+/// A copy of a host vector in an array that grows as needed.
+template <class Array, class V, class A>
+void mirror(Array& to, const std::string& label, const std::vector<V, A>& from) {
+  grow<V>(to, label, from.size());
+  copy_in(to, 0, from.data(), from.size());
+}
+
+template <class T, int Dim, class Space>
+class DeviceParticles {
+ public:
+  /// Allocates for the fields of `host` and copies them.
+  explicit DeviceParticles(const Particles<T, Dim>& host)
+      : count_(host.count()),
+        stride_((host.count() + 31) / 32 * 32),
+        affine_(host.affine.size()),
+        history_(host.history.size()),
+        gradient_(host.gradient.size()) {
+    rows_ = Dim + 2 + affine_ + history_ + gradient_;
+    positions_ = device_array<double, Space>("jaxmpm::positions", Dim * stride_);
+    reals_ = device_array<T, Space>("jaxmpm::fields", rows_ * stride_);
+    ids_ = device_array<std::uint32_t, Space>("jaxmpm::ids", count_);
+    spare_positions_ = device_array<double, Space>("jaxmpm::positions", Dim * stride_);
+    spare_reals_ = device_array<T, Space>("jaxmpm::fields", rows_ * stride_);
+    spare_ids_ = device_array<std::uint32_t, Space>("jaxmpm::ids", count_);
+    load(host);
+  }
+
+  std::size_t count() const { return count_; }
+  std::size_t bytes_per_particle() const { return Dim * sizeof(double) + rows_ * sizeof(T) + sizeof(std::uint32_t); }
+  ParticleFields<T, Dim> fields() const { return view(positions_, reals_, ids_); }
+  /// Room for a sorted copy, which swap() makes the particles.
+  ParticleFields<T, Dim> spare() const { return view(spare_positions_, spare_reals_, spare_ids_); }
+  void swap() { std::swap(positions_, spare_positions_), std::swap(reals_, spare_reals_), std::swap(ids_, spare_ids_); }
+  int rows() const { return int(rows_); }
+
+  /// Copies all fields from host arrays of the same shapes.
+  void load(const Particles<T, Dim>& host) {
+    std::size_t k = 0;
+    host.for_each_field([&](const std::string&, const auto& field) { copy_field(k++, field); });
+  }
+  Particles<T, Dim> on_host() const {
+    Particles<T, Dim> host;
+    const auto arrays = [&](std::size_t n) { return std::vector<Array<T>>(n, Array<T>(count_)); };
+    host.position.assign(Dim, Array<double>(count_)), host.velocity = arrays(Dim);
+    host.mass.resize(count_), host.compression.resize(count_), host.id.resize(count_);
+    host.affine = arrays(affine_), host.history = arrays(history_), host.gradient = arrays(gradient_);
+    std::size_t k = 0;
+    host.for_each_field([&](const std::string&, auto& field) { fetch_field(k++, field); });
+    return host;
+  }
+
+ private:
+  using Doubles = DeviceArray<double, Space>;
+  using Reals = DeviceArray<T, Space>;
+  using Ids = DeviceArray<std::uint32_t, Space>;
+
+  ParticleFields<T, Dim> view(const Doubles& positions, const Reals& reals, const Ids& ids) const {
+    const int history = Dim + 2 + int(affine_);
+    return {positions.data(), reals.data(), ids.data(), stride_, history, gradient_ > 0 ? history + int(history_) : -1};
+  }
+  /// Field k of the field table: positions first, ids last.
+  template <class Field>
+  void copy_field(std::size_t k, const Field& field) {
+    if constexpr (std::is_same_v<typename Field::value_type, std::uint32_t>) copy_in(ids_, 0, field.data(), count_);
+    else if (k >= Dim) copy_row(reals_, k - Dim, field);
+    else copy_row(positions_, k, field);
+  }
+  template <class Table, class Field>
+  void copy_row(const Table& table, std::size_t k, const Field& field) {
+    if constexpr (std::is_same_v<typename Table::value_type, typename Field::value_type>) copy_in(table, k * stride_, field.data(), count_);
+    else throw std::logic_error("the field table has another order than the device's");
+  }
+  template <class Field>
+  void fetch_field(std::size_t k, Field& field) const {
+    if constexpr (std::is_same_v<typename Field::value_type, std::uint32_t>) copy_out(field.data(), ids_, 0, count_);
+    else if (k >= Dim) fetch_row(field, reals_, k - Dim);
+    else fetch_row(field, positions_, k);
+  }
+  template <class Table, class Field>
+  void fetch_row(Field& field, const Table& table, std::size_t k) const {
+    if constexpr (std::is_same_v<typename Table::value_type, typename Field::value_type>)
+      copy_out(field.data(), table, k * stride_, count_);
+    else throw std::logic_error("the field table has another order than the device's");
+  }
+
+  std::size_t count_, stride_, affine_, history_, gradient_, rows_ = 0;
+  Doubles positions_, spare_positions_;
+  Reals reals_, spare_reals_;
+  Ids ids_, spare_ids_;
+};
+
+}  // namespace jaxmpm

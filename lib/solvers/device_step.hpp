@@ -1,0 +1,131 @@
+#pragma once
+// The explicit stepper on a device (Du & He 2025, Eqs 9–18): the layout and the kernels' mathematics of ExplicitStep, with the particles
+// and the grid in the device's memory. A step moves nothing to the host but its report. Runs on any Kokkos execution space.
+#include "kernels/device/scheme.hpp"
+#include "kernels/device/sort.hpp"
+#include "solvers/contact_blocks.hpp"
+#include "solvers/particle_state.hpp"
+
+namespace jaxmpm {
+
+/// Blocks, contact and arenas of a sort in a device's memory.
+template <class T, int Dim, class Space>
+class DeviceGrid {
+ public:
+  /// `model` has to outlive this object.
+  DeviceGrid(const Model& model, const DeviceScheme<T, Dim, Space>& scheme);
+
+  /// Learns the blocks of a new sort.
+  void rebuild(const Blocks<Dim>& blocks);
+  /// Sums the arenas and turns them into velocities, in the space's queue.
+  void update(const Space& space, double dt);
+
+  const GridTables<T, Dim>& tables() const { return tables_; }
+  T* arenas() const { return arenas_.data(); }
+  const Tile* tiles() const { return tiles_.data(); }
+
+  void record_contact(bool on) { recording_ = on; }
+  /// Totals of the last update on the host: impulse of each face and obstacle, three values each, then friction; N s and J.
+  std::vector<double> contact(const Space& space);
+
+ private:
+  void mirror_obstacles(std::size_t blocks);
+
+  const Model& model_;
+  DeviceScheme<T, Dim, Space> scheme_;
+  ContactBlocks<T, Dim> contact_blocks_;
+  T mass_cut_off_;
+  GridTables<T, Dim> tables_{};
+  bool recording_ = false;
+
+  DeviceArray<Tile, Space> tiles_;
+  DeviceArray<Index<Dim>, Space> index_;
+  DeviceArray<int, Space> neighbour_, wall_slot_;
+  DeviceArray<std::uint32_t, Space> first_contribution_, wall_block_, first_obstacle_node_;
+  DeviceArray<Contribution, Space> contributions_;
+  DeviceArray<ObstacleNode<T, Dim>, Space> obstacle_nodes_;
+  DeviceArray<ObstacleLaw<T>, Space> obstacle_laws_;
+  DeviceArray<double, Space> wall_ends_, contact_, contact_total_;
+  DeviceArray<T, Space> wall_coefficients_, arenas_, raw_, grid_;
+};
+
+/// Wall time of the phases. A device runs behind its queue, so a phase is only timed where the queue is drained after it: every 32nd step;
+/// the other steps count as a whole and are shared out in the same proportion.
+class PhaseTimer {
+ public:
+  void begin_step();
+  bool sampling() const { return steps_ % 32 == 1; }
+  /// To be called when a sampled phase has ended.
+  void end_phase(double PhaseSeconds::*phase);
+  void end_step();
+  PhaseSeconds seconds(double sort) const;
+
+ private:
+  static double now();
+  std::uint64_t steps_ = 0;
+  double began_ = 0, phase_began_ = 0, total_ = 0;
+  PhaseSeconds sampled_;
+};
+
+template <class T, int Dim, class Space>
+class DeviceStep final : public Solver {
+ public:
+  DeviceStep(const Model& model, const DeviceScheme<T, Dim, Space>& scheme);
+
+  void step(double dt) override;
+  double stable_step() const override;
+
+  std::uint64_t particle_count() const override;
+  std::vector<BodySnapshot> snapshot(const FieldSelection& fields, bool ordered) const override;
+  void record_forces(bool on) override;
+  ContactForces forces() const override;
+  Dissipation dissipation() const override { return numbers_.dissipation; }
+  std::vector<RawArray> save() const override;
+  void restore(const std::vector<RawArray>& arrays) override;
+  double bytes_per_particle() const override;
+  PhaseSeconds phase_seconds() const override { return timer_.seconds(sort_seconds_); }
+  std::size_t active_blocks() const override { return blocks_.count(); }
+
+ private:
+  /// Particles may move this far, in cells, before they are sorted again: nearly as far as the arenas' halo reaches, as sorting costs more
+  /// than order here.
+  static constexpr double sort_after = 0.9;
+
+  struct DeviceBody {
+    DeviceParticles<T, Dim, Space> particles;
+    std::unique_ptr<BodyKernels<T, Dim, Space>> kernels;
+    std::size_t first_tile = 0, tiles = 0;
+  };
+
+  void sort_if_due();
+  void sort();
+  void rebuild();
+  void p2g();
+  void g2p();
+  void collect(double dt);
+  TileTable<T, Dim> tile_table(const DeviceBody& body) const;
+  std::vector<Particles<T, Dim>> bodies_on_host() const;
+  [[noreturn]] void report_failure() const;
+
+  Model model_;
+  DeviceScheme<T, Dim, Space> scheme_;
+  Space space_;
+  MaterialKernels<T, Dim> materials_;
+  std::vector<DeviceBody> bodies_;
+  Index<Dim> extent_, cells_;
+
+  Blocks<Dim> blocks_;
+  std::vector<std::int64_t> tile_key_;
+  DeviceSort<T, Dim, Space> sort_;
+  DeviceGrid<T, Dim, Space> grid_;
+  StepConstants<T> constants_;
+  DeviceArray<double, Space> report_;  // StepReport
+
+  StepNumbers numbers_;
+  std::vector<double> contact_;  // of the last step, where recorded
+  bool record_forces_ = false;
+  double sort_seconds_ = 0;
+  PhaseTimer timer_;
+};
+
+}  // namespace jaxmpm

@@ -1,0 +1,174 @@
+#pragma once
+// Definitions of DeviceStep, to be instantiated for the execution spaces that a build has.
+#include "core/error.hpp"
+#include "solvers/device_grid_impl.hpp"
+#include "solvers/device_step.hpp"
+
+namespace jaxmpm {
+
+/// One explicit step, stress updated last (Du & He 2025, Eqs 9–18).
+template <class T, int Dim, class Space>
+void DeviceStep<T, Dim, Space>::step(double dt) {
+  constants_.dt = T(dt);
+  sort_if_due();
+  timer_.begin_step();
+  p2g();                     // Eqs 10–12   mass, momentum, impulse of the internal force
+  grid_.update(space_, dt);  // Eqs 13–14   gravity, walls, obstacles
+  if (timer_.sampling()) space_.fence(), timer_.end_phase(&PhaseSeconds::grid);
+  g2p();  // Eqs 15–18   velocity, position, gradient; then the stress (Eqs 19–21)
+  collect(dt);
+}
+
+template <class T, int Dim, class Space>
+DeviceStep<T, Dim, Space>::DeviceStep(const Model& model, const DeviceScheme<T, Dim, Space>& scheme)
+    : model_(model), scheme_(scheme), extent_(scheme.block_extent(model.cells)), grid_(model_, scheme) {
+  for (int d = 0; d < Dim; ++d) cells_[std::size_t(d)] = model.cells[std::size_t(d)];
+  constants_ = {T(0), T(model.cell_size), T(model.method.flip_fraction)};
+  report_ = device_array<double, Space>("jaxmpm::report", StepReport::size);
+  grid_.record_contact(model.account_energy);
+  for (Body& body : model_.bodies) {
+    materials_.push_back(make_material_kernel<T, Dim>(body.material));
+    bodies_.push_back({DeviceParticles<T, Dim, Space>(first_particles<T, Dim>(model_, body, *materials_.back(), numbers_.fastest)),
+                       scheme_.body(body.material)});
+    body.initial = {};  // now in the particles
+  }
+  sort();
+}
+
+template <class T, int Dim, class Space>
+void DeviceStep<T, Dim, Space>::sort_if_due() {
+  if (!(numbers_.drift > sort_after)) return;
+  const auto start = std::chrono::steady_clock::now();
+  sort();
+  sort_seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+template <class T, int Dim, class Space>
+void DeviceStep<T, Dim, Space>::sort() {
+  blocks_.tiles.clear(), tile_key_.clear();
+  for (std::size_t b = 0; b < bodies_.size(); ++b)
+    sort_.sort(space_, bodies_[b].particles, std::uint32_t(b), extent_, scheme_.base_shift, blocks_.tiles, tile_key_);
+  rebuild();
+  numbers_.drift = 0;
+}
+
+template <class T, int Dim, class Space>
+void DeviceStep<T, Dim, Space>::rebuild() {
+  scheme_.build_blocks(blocks_, tile_key_, extent_);
+  grid_.rebuild(blocks_);
+  for (DeviceBody& body : bodies_) body.tiles = 0;
+  for (std::size_t t = blocks_.tiles.size(); t-- > 0;) {
+    DeviceBody& body = bodies_[blocks_.tiles[t].body];
+    body.first_tile = t, ++body.tiles;
+  }
+}
+
+template <class T, int Dim, class Space>
+TileTable<T, Dim> DeviceStep<T, Dim, Space>::tile_table(const DeviceBody& body) const {
+  return {grid_.tiles() + body.first_tile, grid_.tables().index, grid_.arenas() + body.first_tile * scheme_.arena_size};
+}
+
+template <class T, int Dim, class Space>
+void DeviceStep<T, Dim, Space>::p2g() {
+  for (const DeviceBody& body : bodies_) body.kernels->p2g(space_, body.tiles, body.particles.fields(), tile_table(body), constants_);
+  if (timer_.sampling()) space_.fence(), timer_.end_phase(&PhaseSeconds::p2g);
+}
+
+template <class T, int Dim, class Space>
+void DeviceStep<T, Dim, Space>::g2p() {
+  Kokkos::deep_copy(space_, report_, 0.0);
+  const GatherTables<T, Dim> from{grid_.tables().neighbour, grid_.tables().grid, cells_, model_.account_energy, report_.data()};
+  for (const DeviceBody& body : bodies_) body.kernels->g2p(space_, body.tiles, body.particles.fields(), tile_table(body), constants_, from);
+  if (timer_.sampling()) space_.fence(), timer_.end_phase(&PhaseSeconds::g2p);
+}
+
+/// Waits for the step and takes its report.
+template <class T, int Dim, class Space>
+void DeviceStep<T, Dim, Space>::collect(double dt) {
+  std::array<double, StepReport::size> report;
+  const device_detail::HostArray<double> target(report.data(), report.size());
+  Kokkos::deep_copy(space_, target, report_);
+  space_.fence();
+  timer_.end_step();
+  if (report[StepReport::unsound] != 0) report_failure();
+  numbers_.fastest = report[StepReport::fastest], numbers_.last_dt = dt;
+  numbers_.drift += report[StepReport::displacement];
+  numbers_.dissipation.plastic += report[StepReport::plastic], numbers_.dissipation.viscous += report[StepReport::viscous];
+  if (record_forces_ || model_.account_energy) contact_ = grid_.contact(space_);
+  if (model_.account_energy) numbers_.dissipation.friction += contact_.back();
+}
+
+template <class T, int Dim, class Space>
+void DeviceStep<T, Dim, Space>::report_failure() const {
+  const std::vector<Particles<T, Dim>> bodies = bodies_on_host();
+  for (std::size_t b = 0; b < bodies.size(); ++b) check_particles<T, Dim>(model_, model_.bodies[b], bodies[b], 0, bodies[b].count());
+  throw NumericsError("a wave speed is not finite");
+}
+
+template <class T, int Dim, class Space>
+double DeviceStep<T, Dim, Space>::stable_step() const {
+  return jaxmpm::stable_step<T, Dim>(model_, materials_, numbers_.fastest);
+}
+
+template <class T, int Dim, class Space>
+std::uint64_t DeviceStep<T, Dim, Space>::particle_count() const {
+  std::uint64_t n = 0;
+  for (const DeviceBody& body : bodies_) n += body.particles.count();
+  return n;
+}
+
+template <class T, int Dim, class Space>
+double DeviceStep<T, Dim, Space>::bytes_per_particle() const {
+  double bytes = 0;
+  for (const DeviceBody& body : bodies_) bytes += double(body.particles.bytes_per_particle()) * double(body.particles.count());
+  return bytes / double(std::max<std::uint64_t>(particle_count(), 1));
+}
+
+template <class T, int Dim, class Space>
+void DeviceStep<T, Dim, Space>::record_forces(bool on) {
+  record_forces_ = on;
+  grid_.record_contact(on || model_.account_energy);
+}
+
+template <class T, int Dim, class Space>
+ContactForces DeviceStep<T, Dim, Space>::forces() const {
+  ContactForces forces;
+  forces.obstacle.resize(model_.obstacles.size());
+  if (!record_forces_ || contact_.empty()) return forces;
+  for (std::size_t k = 0; k < 6 + forces.obstacle.size(); ++k) {
+    Point& force = k < 6 ? forces.face[k] : forces.obstacle[k - 6];
+    for (std::size_t c = 0; c < 3; ++c) force[c] = contact_[3 * k + c] / numbers_.last_dt;
+  }
+  return forces;
+}
+
+template <class T, int Dim, class Space>
+std::vector<Particles<T, Dim>> DeviceStep<T, Dim, Space>::bodies_on_host() const {
+  std::vector<Particles<T, Dim>> bodies;
+  for (const DeviceBody& body : bodies_) bodies.push_back(body.particles.on_host());
+  return bodies;
+}
+
+template <class T, int Dim, class Space>
+std::vector<BodySnapshot> DeviceStep<T, Dim, Space>::snapshot(const FieldSelection& fields, bool ordered) const {
+  std::vector<BodySnapshot> out;
+  for (std::size_t b = 0; b < bodies_.size(); ++b)
+    out.push_back(body_snapshot<T, Dim>(model_, model_.bodies[b], *materials_[b], bodies_[b].particles.on_host(), fields, ordered));
+  return out;
+}
+
+template <class T, int Dim, class Space>
+std::vector<RawArray> DeviceStep<T, Dim, Space>::save() const {
+  return save_state<T, Dim>(bodies_on_host(), blocks_.tiles, tile_key_, numbers_);
+}
+
+template <class T, int Dim, class Space>
+void DeviceStep<T, Dim, Space>::restore(const std::vector<RawArray>& arrays) {
+  std::vector<Particles<T, Dim>> bodies = bodies_on_host();
+  restore_state<T, Dim>(arrays, bodies, blocks_.tiles, tile_key_, numbers_);
+  for (std::size_t b = 0; b < bodies_.size(); ++b) bodies_[b].particles.load(bodies[b]);
+  contact_.clear();
+  rebuild();
+}
+
+}  // namespace jaxmpm

@@ -1,0 +1,120 @@
+// The device stepper, its very kernels run by the host's threads in teams of one, against the host stepper: same scenes, same results to
+// round-off, and checkpoints that either continues.
+#include <catch2/catch.hpp>
+
+#include "kernels/device/scheme_impl.hpp"
+#include "scenes.hpp"
+#include "solvers/device_step_impl.hpp"
+#include "solvers/explicit_step.hpp"
+
+using namespace jaxmpm;
+
+namespace {
+
+const FieldSelection all_fields{true, true, true, true, true, true, true};
+
+/// Largest difference of two fields over the largest value.
+double difference(const std::vector<double>& a, const std::vector<double>& b) {
+  REQUIRE(a.size() == b.size());
+  double worst = 0, largest = 0;
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    if (!(std::abs(a[k] - b[k]) <= worst)) worst = std::abs(a[k] - b[k]);
+    largest = std::max(largest, std::abs(b[k]));
+  }
+  return largest > 0 ? worst / largest : worst;
+}
+
+double difference(const Solver& one, const Solver& other) {
+  const auto a = one.snapshot(all_fields, true), b = other.snapshot(all_fields, true);
+  REQUIRE(a.size() == b.size());
+  double worst = 0;
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    REQUIRE(a[k].id == b[k].id);
+    for (const auto field :
+         {&BodySnapshot::position, &BodySnapshot::velocity, &BodySnapshot::density, &BodySnapshot::pressure, &BodySnapshot::stress,
+          &BodySnapshot::velocity_gradient, &BodySnapshot::plastic_strain, &BodySnapshot::strain_energy})
+      worst = std::max(worst, difference(a[k].*field, b[k].*field));
+  }
+  return worst;
+}
+
+double difference(const ContactForces& a, const ContactForces& b) {
+  double worst = 0, largest = 0;
+  const auto add = [&](const Point& x, const Point& y) {
+    for (std::size_t c = 0; c < 3; ++c) worst = std::max(worst, std::abs(x[c] - y[c])), largest = std::max(largest, std::abs(y[c]));
+  };
+  for (std::size_t f = 0; f < 6; ++f) add(a.face[f], b.face[f]);
+  for (std::size_t o = 0; o < b.obstacle.size(); ++o) add(a.obstacle[o], b.obstacle[o]);
+  REQUIRE(largest > 0);
+  return worst / largest;
+}
+
+double total(const Dissipation& d) { return d.plastic + d.viscous + d.friction; }
+
+template <class Sch>
+Model scene(const deck::Material& first, const deck::Material& second, deck::ContactKind kind) {
+  deck::Method method;
+  method.transfer = Sch::transfer, method.gradient = Sch::mls ? deck::GradientForm::mls : deck::GradientForm::spline;
+  method.basis = Sch::S == 2 ? deck::Basis::linear : (Sch::S == 3 ? deck::Basis::quadratic : deck::Basis::cubic);
+  method.precision = sizeof(typename Sch::T) == 4 ? deck::Precision::f32 : deck::Precision::f64;
+  Model model = busy_scene(Sch::Dim, method, first, second, kind);
+  model.account_energy = model.record_velocity_gradient = true;
+  return model;
+}
+
+/// Steps both steppers, through several sorts of each, and compares all that they show.
+template <class Sch>
+void compare(const deck::Material& first, const deck::Material& second, deck::ContactKind kind) {
+  using T = typename Sch::T;
+  const Model model = scene<Sch>(first, second, kind);
+  const double one_step = sizeof(T) == 4 ? 2e-5 : 1e-12, run = sizeof(T) == 4 ? 5e-3 : 1e-8, dt = 2e-4;
+  ExplicitStep<T, Sch::Dim> host(model);
+  DeviceStep<T, Sch::Dim, Host> device(model, device_detail::scheme_of<Sch, Host>());
+  host.record_forces(true), device.record_forces(true);
+  host.step(dt), device.step(dt);
+  CHECK(difference(device, host) < one_step);
+  CHECK(difference(device.forces(), host.forces()) < 10 * one_step);
+  CHECK(total(device.dissipation()) == Approx(total(host.dissipation())).epsilon(10 * one_step));
+  CHECK(device.stable_step() == Approx(host.stable_step()).epsilon(one_step));
+  CHECK(device.active_blocks() == host.active_blocks());
+  for (int k = 1; k < 60; ++k) host.step(dt), device.step(dt);
+  const double found = difference(device, host);
+  INFO("after 60 steps " << found);
+  CHECK(found < run);
+  host.restore(device.save());
+  CHECK(difference(device, host) == 0);
+  host.step(dt), device.step(dt);
+  CHECK(difference(device, host) < one_step);
+  device.restore(host.save());
+  CHECK(difference(device, host) == 0);
+}
+
+template <class T, int Dim, int S, deck::Transfer transfer, bool mls = false>
+using S_ = Scheme<T, Dim, S, transfer, mls>;
+
+}  // namespace
+
+using Kind = deck::ContactKind;
+using Transfer = deck::Transfer;
+
+TEST_CASE("device stepper agrees with the host's in 2D") {
+  SECTION("APIC, quadratic, friction") { compare<S_<double, 2, 3, Transfer::apic>>(water(), sand(), Kind::friction); }
+  SECTION("FLIP, quadratic, friction") { compare<S_<double, 2, 3, Transfer::flip>>(water(2), sand(), Kind::friction); }
+  SECTION("TPIC, linear, no_slip") { compare<S_<double, 2, 2, Transfer::tpic>>(water(), deck::NeoHookean{1000, 1e5, 0.3}, Kind::no_slip); }
+  SECTION("PIC, cubic, mls, slip") {
+    compare<S_<double, 2, 4, Transfer::pic, true>>(sand(), deck::LinearElastic{1000, 1e5, 0.3}, Kind::slip);
+  }
+}
+
+TEST_CASE("device stepper agrees with the host's in 3D") {
+  SECTION("APIC, quadratic, mls, friction") { compare<S_<double, 3, 3, Transfer::apic, true>>(water(), sand(), Kind::friction); }
+  SECTION("FLIP, cubic, separate") { compare<S_<double, 3, 4, Transfer::flip>>(water(2), sand(), Kind::separate); }
+  SECTION("APIC, quadratic, single precision") { compare<S_<float, 3, 3, Transfer::apic>>(water(), sand(), Kind::friction); }
+}
+
+TEST_CASE("device stepper names the particle that leaves the domain") {
+  using Sch = S_<double, 2, 3, Transfer::apic>;
+  const Model model = scene<Sch>(water(), sand(), Kind::slip);
+  DeviceStep<double, 2, Host> device(model, device_detail::scheme_of<Sch, Host>());
+  CHECK_THROWS_WITH(device.step(0.5), Catch::Contains("particle ") && Catch::Contains("has left the domain"));
+}
