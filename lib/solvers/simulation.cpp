@@ -68,9 +68,9 @@ Moment Simulation::next() const { return control_.after_next(now_, control_.is_a
 void Simulation::step() {
   const Moment after = next();
   attempted_ = after;
-  // The end shortens its step. The checkpoint of a finished run is therefore the state before it, from which a later end continues as if
-  // this one had never been.
-  if (control_.is_automatic() && control_.done(after) && !checkpointed_) write_checkpoint();
+  // The end shortens its step and is recorded out of turn. The checkpoint of a finished run is therefore the state before its last step,
+  // from which a later end continues as if this one had never been.
+  if (control_.done(after) && !checkpointed_) write_checkpoint();
   const Clock::time_point begin = Clock::now();
   solver_.step(after.dt);
   outcome_.seconds += since(begin);
@@ -86,7 +86,6 @@ void Simulation::record() {
 }
 
 void Simulation::record_end() {
-  if (!control_.is_automatic() && !checkpointed_) write_checkpoint();
   if (!gauges_.due(now_)) recorder_.gauges(now_);
   if (!frames_.due(now_)) recorder_.frame(now_);
 }

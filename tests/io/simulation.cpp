@@ -49,10 +49,10 @@ TEST_CASE("a run records step 0, its schedule and the end") {
   CHECK(log.frames[1].step == 4);
   CHECK(log.frames[3].step == 10);
   CHECK(log.readings.size() == 6);
-  CHECK(log.checkpoints.back().step == 10);
+  CHECK(log.checkpoints.back().step == 9);
 }
 
-TEST_CASE("the checkpoint of an automatic run lies before the step that its end shortened") {
+TEST_CASE("the checkpoint of a finished run lies before its last step") {
   const Model model = testing::ballistic_model();
   Ballistic solver(model);
   Log log;

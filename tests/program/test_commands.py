@@ -1,0 +1,64 @@
+"""jaxmpm check, bench, schema, info."""
+import json
+import pathlib
+import unittest
+
+from harness import BAD_VERDICT, DECK, DONE, INPUTS, ProgramTest, small_deck
+
+
+class Commands(ProgramTest):
+    def test_help_lists_what_there_is(self):
+        said = self.expect(DONE, "--help")
+        for command in ("run", "check", "bench", "schema", "info"):
+            self.assertIn(command, said)
+        self.assertIn("--max-walltime", self.expect(DONE, "run", "--help"))
+
+    def test_check(self):
+        said = self.expect(DONE, "check", self.write(small_deck()))
+        for word in ("576", "time step", "memory", "estimated time"):
+            self.assertIn(word, said)
+        self.assertFalse((self.scratch / "out").exists())
+        self.assertIn("VERDICT", self.expect(BAD_VERDICT, "check", self.write(small_deck(time={"end": 1, "step": 0.01}))))
+        self.assertIn("/gravity", self.expect(DECK, "check", self.write(small_deck(gravity=[0, 0, -1]))))
+
+    def test_bench(self):
+        done = self.call("bench", self.write(small_deck()), "--steps", "20", "--json", "--threads", "1")
+        self.assertEqual(done.returncode, DONE, done.stderr)
+        result = json.loads(done.stdout)
+        self.assertEqual((result["particles"], result["steps"], result["threads"], result["backend"]), (576, 20, 1, "cpu"))
+        self.assertEqual((result["precision"], result["gradient_form"]), ("f64", "spline"))
+        self.assertAlmostEqual(result["particle_steps_per_second"], 576 * 20 / result["seconds"], delta=1e-6 * result["particle_steps_per_second"])
+        self.assertAlmostEqual(result["seconds_per_1000_steps"], 50 * result["seconds"])
+        self.assertGreater(result["bytes_per_particle"], 0)
+        self.assertGreater(result["peak_memory_bytes"], 1e6)
+        self.assertLessEqual(sum(result["seconds_by_phase"].values()), 1.01 * result["seconds"])
+
+    def test_schema_and_info(self):
+        schema = json.loads(self.call("schema").stdout)
+        self.assertIn("2020-12", schema["$schema"])
+        self.assertIn("| key", self.call("schema", "--markdown").stdout.lower().replace("|key", "| key"))
+        said = self.expect(DONE, "info")
+        for word in ("git commit", "Kokkos", "compiler", "vector width", "backends"):
+            self.assertIn(word, said)
+
+    def test_quiet_is_quiet_and_the_log_tells_all(self):
+        deck = self.write(small_deck(time={"end": 0.02}))
+        done = self.call("run", deck, "-o", "a", "-q", "--log", "log.txt", "--threads", "1")
+        self.assertEqual((done.returncode, done.stdout, done.stderr), (DONE, "", ""))
+        log = (self.scratch / "log.txt").read_text()
+        self.assertIn("Done", log)
+        self.assertIn("frame 1", log)
+        self.assertIn("frame 1", self.expect(DONE, "run", deck, "-o", "b", "-v", "--threads", "1"))
+
+    def test_every_deck_of_inputs_passes_the_check_in_its_coarse_form(self):
+        for line in (INPUTS / "coarse.txt").read_text().splitlines():
+            if not line.strip() or line.startswith("#"):
+                continue
+            name, *assignments = line.split()
+            with self.subTest(deck=name):
+                self.assertTrue(pathlib.Path(INPUTS / name).exists())
+                self.expect(DONE, "check", INPUTS / name, "--threads", "1", *[part for a in assignments for part in ("--set", a)])
+
+
+if __name__ == "__main__":
+    unittest.main()

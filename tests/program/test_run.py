@@ -1,0 +1,149 @@
+"""jaxmpm run: results as documented, exit codes, refusals, and runs that do not depend on threads or output."""
+import json
+import subprocess
+import unittest
+
+import h5py
+import numpy as np
+
+from harness import DECK, DONE, IO, NUMERICS, PROGRAM, ProgramTest, datasets, small_deck
+
+
+class Results(ProgramTest):
+    def test_layout(self):
+        deck = self.write(small_deck())
+        self.run_deck(deck, "out")
+        out = self.scratch / "out"
+        with h5py.File(out / "results.h5") as index:
+            self.assertEqual(index.attrs["deck"], deck.read_text())
+            self.assertEqual(json.loads(index.attrs["deck_resolved"])["time"]["end"], 0.1)
+            self.assertEqual((index.attrs["format"], index.attrs["backend"], index.attrs["precision"]), (1, "cpu", "f64"))
+            self.assertEqual(sorted(index["frames"]), [f"{n:06d}" for n in range(6)])
+            water = index["frames/000003/water"]
+            self.assertTrue(np.all(np.diff(water["id"][...].astype(int)) == 1))
+            self.assertEqual(water["velocity"].shape, water["position"].shape)
+            self.assertEqual(water["velocity"].attrs["units"], "m/s")
+            self.assertIn("pressure", water)
+            self.assertGreaterEqual(index["frames/000003"].attrs["time"], 0.06 * (1 - 1e-12))
+            energy = index["gauges/energy"]
+            self.assertEqual(list(energy["value"].attrs["components"]), ["kinetic", "potential", "strain", "plastic", "viscous", "friction", "numerical"])
+            self.assertLess(abs(np.diff(energy["value"][...].sum(axis=1))).max(), 1e-9 * energy["value"][0].sum())
+            self.assertEqual(index["gauges/some/position"].shape[1:], (2, 2))
+            self.assertEqual(index["gauges/load/valid"][0], 0)
+            self.assertAlmostEqual(float(index["gauges/level/value"][0]), 0.3, places=6)
+        summary = json.loads((out / "run.json").read_text())
+        self.assertEqual(summary["particles"], 576)
+        self.assertEqual(summary["total_steps"], summary["steps"])
+        self.assertEqual((out / "vtk" / "results.pvd").read_text().count("obstacles.vtp"), 6)
+
+    def test_fixed_step_moves_times_to_the_nearest_step_and_says_so(self):
+        deck = self.write(small_deck(time={"end": 0.0304, "step": 3e-4}, output={"interval": 0.01, "gauge_interval": 0.01}))
+        said = self.run_deck(deck, "out")
+        self.assertIn("/time/end", said)
+        self.assertIn("/output/interval", said)
+        with h5py.File(self.scratch / "out" / "results.h5") as index:
+            steps = [int(frame.attrs["step"]) for frame in index["frames"].values()]
+            times = [float(frame.attrs["time"]) for frame in index["frames"].values()]
+        self.assertEqual(steps, [0, 33, 67, 100, 101])
+        np.testing.assert_allclose(times, np.array(steps) * 3e-4, rtol=1e-15)
+
+    def test_chosen_fields_and_formats(self):
+        output = {"interval": 0.05, "formats": ["hdf5"], "fields": ["density", "stress", "velocity_gradient", "body", "plastic_strain"]}
+        self.run_deck(self.write(small_deck(output=output, gauges={})), "out")
+        self.assertFalse((self.scratch / "out" / "vtk").exists())
+        with h5py.File(self.scratch / "out" / "frames" / "000001.h5") as frame:
+            self.assertEqual(sorted(frame["water"]), ["body", "density", "id", "plastic_strain", "position", "stress", "velocity_gradient"])
+            self.assertEqual(frame["water/stress"].shape, (576, 6))
+            self.assertEqual(frame["water/velocity_gradient"].shape, (576, 2, 2))
+            self.assertGreater(np.abs(frame["water/velocity_gradient"]).max(), 0)
+
+    def test_one_thread_and_two_give_the_same_bits(self):
+        deck = self.write(small_deck())
+        self.run_deck(deck, "one")
+        self.expect(DONE, "run", deck, "-o", "two", "--threads", "2")
+        self.assertSameResults("one", "two")
+
+    def test_output_changes_nothing(self):
+        self.run_deck(self.write(small_deck()), "much", "--set", "/output/interval=0.001", "--set", "/output/checkpoint_interval_minutes=0.0001")
+        bare = small_deck(gauges={}, output={"interval": 10, "formats": ["hdf5"]})
+        self.run_deck(self.write(bare), "little")
+        ends = []
+        for out in ("much", "little"):
+            found = datasets(self.scratch / out)
+            last = max(name for name in found if name.endswith("@time")).removesuffix("@time")
+            ends.append([found[last + "@step"], found[last + "/water/position"], found[last + "/water/velocity"]])
+        for a, b in zip(*ends):
+            self.assertTrue(np.array_equal(a, b))
+
+
+class ExitCodes(ProgramTest):
+    def test_usage_is_2(self):
+        deck = self.write(small_deck())
+        for arguments in ([], ["walk"], ["run"], ["run", deck, "--threads", "0"], ["run", deck, "--no-such"], ["bench", deck], ["run", deck, "--overwrite", "--resume", "auto"],
+                          ["run", deck, "--backend", "abacus"], ["run", deck, "--max-walltime", "-1"], ["check", deck, "-q", "-v"]):
+            self.expect(DECK, *arguments)
+        self.assertFalse((self.scratch / "out").exists())
+
+    def test_deck_errors_are_2_all_at_once_and_touch_nothing(self):
+        deck = small_deck(gravity=[0, "down"])
+        deck["bodies"][0]["shapes"] = 1
+        self.run_deck(self.write(small_deck()), "out")
+        before = sorted(self.scratch.rglob("*"))
+        said = self.run_deck(self.write(deck), "out", "--overwrite", code=DECK)
+        self.assertIn("/gravity/1", said)
+        self.assertIn("/bodies/0/shapes", said)
+        self.assertEqual(before, sorted(self.scratch.rglob("*")))
+
+    def test_missing_cuda_is_2_and_says_what_there_is(self):
+        if "cuda" in self.expect(DONE, "info").split("backends")[1].splitlines()[0]:
+            self.skipTest("this build has CUDA")
+        self.assertIn("cpu", self.run_deck(self.write(small_deck()), "out", "--backend", "cuda", code=DECK))
+
+    def test_unknown_particle_id_is_2(self):
+        deck = small_deck(gauges={"p": {"kind": "particles", "ids": [10**6], "fields": ["velocity"]}})
+        self.assertIn("/gauges/p/ids/0", self.run_deck(self.write(deck), "out", code=DECK))
+
+    def test_unstable_run_is_3_and_leaves_no_nan(self):
+        deck = self.write(small_deck(time={"end": 1.0, "step": 0.02}, output={"interval": 0.02}))
+        said = self.run_deck(deck, "out", code=NUMERICS)
+        for word in ("particle", "step", "dt", "/time/step", "last good state"):
+            self.assertIn(word, said)
+        self.assertNoHalfFiles("out")
+        for name, values in datasets(self.scratch / "out").items():
+            self.assertTrue(np.all(np.isfinite(values)), name)
+        self.assertTrue((self.scratch / "out" / "checkpoint.h5").exists())
+
+    def test_results_are_not_overwritten_unasked(self):
+        deck = self.write(small_deck())
+        self.run_deck(deck, "out")
+        before = {path: path.stat().st_mtime_ns for path in (self.scratch / "out").rglob("*")}
+        said = self.run_deck(deck, "out", code=IO)
+        self.assertIn("--overwrite", said)
+        self.assertEqual(before, {path: path.stat().st_mtime_ns for path in (self.scratch / "out").rglob("*")})
+        (self.scratch / "out" / "mine.txt").write_text("kept")
+        self.run_deck(deck, "out", "--overwrite", "--set", "/output/interval=0.05")
+        self.assertEqual(len(list((self.scratch / "out" / "frames").iterdir())), 3)
+        self.assertTrue((self.scratch / "out" / "mine.txt").exists())
+
+    def test_unwritable_places_are_4(self):
+        deck = self.write(small_deck())
+        (self.scratch / "file").write_text("")
+        for out in ("file", "file/below", "/proc/jaxmpm", "/dev/full"):
+            self.assertIn(out, self.run_deck(deck, out, code=IO))
+        self.expect(IO, "run", deck, "-o", "out", "--log", self.scratch / "file" / "log.txt")
+        self.expect(IO, "run", self.scratch / "missing.json")
+
+    def test_full_disk_is_4_and_leaves_nothing_half_written(self):
+        deck = self.write(small_deck())
+        for limit in (4, 24):  # blocks of 1 KiB that a file may have
+            command = f'ulimit -f {limit}; exec "$0" "$@"'
+            done = subprocess.run(["bash", "-c", command, PROGRAM, "run", deck, "-o", f"out{limit}", "--threads", "1"], cwd=self.scratch, capture_output=True, text=True, check=False)
+            self.assertEqual(done.returncode, IO, done.stderr)
+            self.assertIn("File too large", done.stderr)
+            self.assertIn(f"out{limit}", done.stderr)
+            self.assertNoHalfFiles(f"out{limit}")
+            self.assertFalse(list((self.scratch / f"out{limit}").rglob("*.tmp")))
+
+
+if __name__ == "__main__":
+    unittest.main()
