@@ -1,5 +1,5 @@
 #pragma once
-// Names of everything in a results directory (docs/files.md), and what may be done with what lies there.
+// Names of everything in a results directory (docs/results.md), and what may be done with what lies there.
 #include <string>
 #include <vector>
 
