@@ -52,6 +52,9 @@ void sum_arenas(const Blocks<Sch::Dim>& blocks, std::size_t b, const typename Sc
 template <class Sch>
 void load_arena(const Blocks<Sch::Dim>& blocks, std::size_t block, const typename Sch::T* grid, typename Sch::T* arena) {
   using T = typename Sch::T;
+  constexpr int filled = 4 * Sch::Shape::arena_nodes;
+  for (int plane = 0; plane < Sch::planes; ++plane)  // rows read on behind the last node, with weight zero: what lies there must be finite
+    std::memset(arena + plane * Sch::arena_plane + filled, 0, sizeof(T) * (Sch::arena_plane - filled));
   for (int m = 0; m < Sch::Shape::neighbours; ++m) {
     const T* from = grid + std::size_t(blocks.neighbour[block * Sch::Shape::neighbours + std::size_t(m)]) * Sch::own_size;
     const NeighbourOffset<Sch::Dim> n(m);
