@@ -1,6 +1,7 @@
-# jaxmpm_room(NAME [USES room…] [LINK target…]): the library of lib/NAME, from all its .cpp files; header-only rooms become interface libraries.
+# jaxmpm_room(NAME [USES room…] [LINK target…] [NO_KOKKOS]): the library of lib/NAME, from all its .cpp files; header-only rooms become interface
+# libraries. NO_KOKKOS: none of them includes Kokkos, so that in CUDA builds the host compiler takes them, which is quicker than nvcc.
 function(jaxmpm_room name)
-  cmake_parse_arguments(ROOM "" "" "USES;LINK" ${ARGN})
+  cmake_parse_arguments(ROOM "NO_KOKKOS" "" "USES;LINK" ${ARGN})
   set(target jaxmpm_${name})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/lib/${name}/*.cpp)
   jaxmpm_cuda_sources(cuda_sources ${PROJECT_SOURCE_DIR}/lib/${name}/*.cu)
@@ -10,6 +11,9 @@ function(jaxmpm_room name)
     add_library(${target} STATIC ${sources})
     target_include_directories(${target} PUBLIC ${PROJECT_SOURCE_DIR}/lib)
     target_link_libraries(${target} PUBLIC ${ROOM_USES} ${ROOM_LINK} PRIVATE jaxmpm_warnings)
+    if(ROOM_NO_KOKKOS AND JAXMPM_CUDA)
+      target_compile_options(${target} PRIVATE --host-only)
+    endif()
   else()
     add_library(${target} INTERFACE)
     target_include_directories(${target} INTERFACE ${PROJECT_SOURCE_DIR}/lib)

@@ -75,4 +75,19 @@ JAXMPM_INLINE T* team_memory(const Team& team, int values) {
   return static_cast<T*>(team.team_scratch(0).get_shmem(values * int(sizeof(T))));
 }
 
+/// Largest of the values of a team's threads, and their sum; all threads have to call. The barrier keeps a reduction from overtaking the
+/// one before it, as they use the same shared memory (Kokkos 3.4).
+template <class Team>
+JAXMPM_INLINE double team_max(const Team& team, double value) {
+  team.team_barrier();
+  team.team_reduce(Kokkos::Max<double>(value));
+  return value;
+}
+template <class Team>
+JAXMPM_INLINE double team_sum(const Team& team, double value) {
+  team.team_barrier();
+  team.team_reduce(Kokkos::Sum<double>(value));
+  return value;
+}
+
 }  // namespace jaxmpm

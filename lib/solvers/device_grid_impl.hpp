@@ -62,7 +62,7 @@ void DeviceGrid<T, Dim, Space>::update(const Space& space, double dt) {
 }
 
 template <class T, int Dim, class Space>
-std::vector<double> DeviceGrid<T, Dim, Space>::contact(const Space& space) {
+std::vector<double> DeviceGrid<T, Dim, Space>::contact(const Space& space) const {
   parallel_for_teams("jaxmpm::contact", space, tables_.contact_size, transfer_threads, 0,
                      SumContact<Space>{contact_.data(), tables_.blocks, tables_.contact_size, contact_total_.data()});
   space.fence();

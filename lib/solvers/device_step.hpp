@@ -26,7 +26,7 @@ class DeviceGrid {
 
   void record_contact(bool on) { recording_ = on; }
   /// Totals of the last update on the host: impulse of each face and obstacle, three values each, then friction; N s and J.
-  std::vector<double> contact(const Space& space);
+  std::vector<double> contact(const Space& space) const;
 
  private:
   void mirror_obstacles(std::size_t blocks);
@@ -122,8 +122,7 @@ class DeviceStep final : public Solver {
   DeviceArray<double, Space> report_;  // StepReport
 
   StepNumbers numbers_;
-  std::vector<double> contact_;  // of the last step, where recorded
-  bool record_forces_ = false;
+  bool record_forces_ = false, contact_known_ = false;  // contact_known_: that of the last step is in grid_
   double sort_seconds_ = 0;
   PhaseTimer timer_;
 };

@@ -94,8 +94,8 @@ void DeviceStep<T, Dim, Space>::collect(double dt) {
   numbers_.fastest = report[StepReport::fastest], numbers_.last_dt = dt;
   numbers_.drift += report[StepReport::displacement];
   numbers_.dissipation.plastic += report[StepReport::plastic], numbers_.dissipation.viscous += report[StepReport::viscous];
-  if (record_forces_ || model_.account_energy) contact_ = grid_.contact(space_);
-  if (model_.account_energy) numbers_.dissipation.friction += contact_.back();
+  contact_known_ = record_forces_;
+  if (model_.account_energy) numbers_.dissipation.friction += grid_.contact(space_).back();
 }
 
 template <class T, int Dim, class Space>
@@ -126,7 +126,7 @@ double DeviceStep<T, Dim, Space>::bytes_per_particle() const {
 
 template <class T, int Dim, class Space>
 void DeviceStep<T, Dim, Space>::record_forces(bool on) {
-  record_forces_ = on;
+  record_forces_ = on, contact_known_ = contact_known_ && on;
   grid_.record_contact(on || model_.account_energy);
 }
 
@@ -134,10 +134,11 @@ template <class T, int Dim, class Space>
 ContactForces DeviceStep<T, Dim, Space>::forces() const {
   ContactForces forces;
   forces.obstacle.resize(model_.obstacles.size());
-  if (!record_forces_ || contact_.empty()) return forces;
+  if (!contact_known_) return forces;
+  const std::vector<double> contact = grid_.contact(space_);
   for (std::size_t k = 0; k < 6 + forces.obstacle.size(); ++k) {
     Point& force = k < 6 ? forces.face[k] : forces.obstacle[k - 6];
-    for (std::size_t c = 0; c < 3; ++c) force[c] = contact_[3 * k + c] / numbers_.last_dt;
+    for (std::size_t c = 0; c < 3; ++c) force[c] = contact[3 * k + c] / numbers_.last_dt;
   }
   return forces;
 }
@@ -167,7 +168,7 @@ void DeviceStep<T, Dim, Space>::restore(const std::vector<RawArray>& arrays) {
   std::vector<Particles<T, Dim>> bodies = bodies_on_host();
   restore_state<T, Dim>(arrays, bodies, blocks_.tiles, tile_key_, numbers_);
   for (std::size_t b = 0; b < bodies_.size(); ++b) bodies_[b].particles.load(bodies[b]);
-  contact_.clear();
+  contact_known_ = false;
   rebuild();
 }
 

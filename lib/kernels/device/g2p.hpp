@@ -145,18 +145,16 @@ struct GatherTiles {
   }
 
   /// Adds what the team's threads found to the step's report; most teams find the largest values already there.
-  JAXMPM_INLINE void give_report(const Team<Space>& team, ThreadReport& mine) const {
-    team.team_reduce(Kokkos::Max<double>(mine.fastest));
-    team.team_reduce(Kokkos::Max<double>(mine.displacement));
-    team.team_reduce(Kokkos::Max<double>(mine.unsound));
-    if (account) team.team_reduce(Kokkos::Sum<double>(mine.lost));
+  JAXMPM_INLINE void give_report(const Team<Space>& team, const ThreadReport& mine) const {
+    const double fastest = team_max(team, mine.fastest), displacement = team_max(team, mine.displacement);
+    const double unsound = team_max(team, mine.unsound), lost = account ? team_sum(team, mine.lost) : 0.0;
     if (team.team_rank() != 0) return;
     const auto raise = [&](int at, double value) {
       if (value > report[at]) Kokkos::atomic_fetch_max(report + at, value);
     };
-    raise(StepReport::fastest, mine.fastest), raise(StepReport::displacement, mine.displacement), raise(StepReport::unsound, mine.unsound);
+    raise(StepReport::fastest, fastest), raise(StepReport::displacement, displacement), raise(StepReport::unsound, unsound);
     if (account)
-      Kokkos::atomic_add(report + (Law::template plastic_strain_index<Dim>() >= 0 ? StepReport::plastic : StepReport::viscous), mine.lost);
+      Kokkos::atomic_add(report + (Law::template plastic_strain_index<Dim>() >= 0 ? StepReport::plastic : StepReport::viscous), lost);
   }
 };
 

@@ -156,7 +156,7 @@ struct SumContact {
     const auto entry = std::size_t(team.league_rank());
     double sum = 0;
     team_for(team, int(blocks), [&](int b) { sum += contact[std::size_t(b) * contact_size + entry]; });
-    team.team_reduce(Kokkos::Sum<double>(sum));
+    sum = team_sum(team, sum);
     if (team.team_rank() == 0) total[entry] = sum;
   }
 };
