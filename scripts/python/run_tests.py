@@ -17,6 +17,8 @@ import xml.etree.ElementTree
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SUITES = ("unit", "program", "decks", "validate")
+# Two tests at a time, each with threads that wait by spinning, would be slower by far than with one thread each.
+ONE_THREAD = {**os.environ, "OMP_NUM_THREADS": "1"}
 
 
 class Tally:
@@ -36,7 +38,7 @@ def unit(build, tally, options):
     report = pathlib.Path(build).resolve() / "ctest.xml"
     report.unlink(missing_ok=True)
     command = ["ctest", "--test-dir", str(build), "-j2", "--output-on-failure", "--timeout", "1200", "--output-junit", str(report)]
-    subprocess.run(command, check=False)
+    subprocess.run(command, check=False, env=ONE_THREAD)
     if not report.is_file():
         tally.add("ctest (it left no report)", False)
         return
@@ -100,7 +102,7 @@ def decks(build, tally, _options):
             command = [build / "jaxmpm", "run", ROOT / "inputs" / name, "-q", "-o", pathlib.Path(out) / name]
             for assignment in forms[name]:
                 command += ["--set", assignment]
-            tally.add(f"inputs/{name}", run_quietly(command, f"inputs/{name}"))
+            tally.add(f"inputs/{name}", run_quietly(command, f"inputs/{name}", env=ONE_THREAD))
 
 
 def validate(_build, tally, options):
