@@ -19,8 +19,9 @@ std::string duration(double seconds) {
 
 Progress::Progress(std::uint64_t particles, bool quiet) : particles_(particles), quiet_(quiet), terminal_(is_terminal()) {}
 
-Progress::~Progress() {
-  if (shown_ && terminal_) std::fputc('\n', stderr);
+void Progress::finish() {
+  if (shown_) std::fputs("\r\033[K", stderr);
+  shown_ = false;
 }
 
 void Progress::update(const Moment& now, double end) {

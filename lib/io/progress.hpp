@@ -10,9 +10,11 @@ namespace jaxmpm {
 class Progress {
  public:
   Progress(std::uint64_t particles, bool quiet);
-  ~Progress();
+  ~Progress() { finish(); }
   /// After each step; costs a look at the clock. `end` is the physical time at which the run ends.
   void update(const Moment& now, double end);
+  /// Clears the line on a terminal, so that what is told next starts on a line of its own.
+  void finish();
 
  private:
   using Clock = std::chrono::steady_clock;

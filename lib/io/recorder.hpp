@@ -18,8 +18,11 @@ class ResultsRecorder : public Recorder {
   void resume(const Checkpoint& from);
   /// Writes what exists before the first step: obstacles and an index.
   void begin();
-  /// Writes the index with the last readings.
-  void finish() const { write_index(); }
+  /// Writes the index with the last readings and ends the line of progress.
+  void finish() {
+    progress_.finish();
+    write_index();
+  }
 
   void frame(const Moment& now) override;
   void gauges(const Moment& now) override;
