@@ -5,6 +5,13 @@
 
 namespace jaxmpm {
 
+/// {a0+a2, a1+a3, b0+b2, b1+b3} of quads. (Not a lambda in sum_quads: nvcc takes those for device code.)
+template <class T>
+JAXMPM_INLINE Pack<T, 16> add_halves(const Pack<T, 16>& a, const Pack<T, 16>& b) {
+  return Pack<T, 16>(__builtin_shufflevector(a.v, b.v, 0, 1, 2, 3, 4, 5, 6, 7, 16, 17, 18, 19, 20, 21, 22, 23)) +
+         Pack<T, 16>(__builtin_shufflevector(a.v, b.v, 8, 9, 10, 11, 12, 13, 14, 15, 24, 25, 26, 27, 28, 29, 30, 31));
+}
+
 /// Adds up the nodes of a row: per quad of lanes. Takes N/4 packs and returns one that holds their sums side by side.
 template <class T, int N>
 JAXMPM_INLINE Pack<T, N> sum_quads(const Pack<T, N>* x) {
@@ -15,11 +22,7 @@ JAXMPM_INLINE Pack<T, N> sum_quads(const Pack<T, N>* x) {
            Pack<T, N>(__builtin_shufflevector(x[0].v, x[1].v, 4, 5, 6, 7, 12, 13, 14, 15));
   } else {
     static_assert(N == 16);
-    const auto half = [](const Pack<T, N>& a, const Pack<T, N>& b) {  // {a0+a2, a1+a3, b0+b2, b1+b3} of quads
-      return Pack<T, N>(__builtin_shufflevector(a.v, b.v, 0, 1, 2, 3, 4, 5, 6, 7, 16, 17, 18, 19, 20, 21, 22, 23)) +
-             Pack<T, N>(__builtin_shufflevector(a.v, b.v, 8, 9, 10, 11, 12, 13, 14, 15, 24, 25, 26, 27, 28, 29, 30, 31));
-    };
-    const Pack<T, N> ab = half(x[0], x[1]), cd = half(x[2], x[3]);
+    const Pack<T, N> ab = add_halves(x[0], x[1]), cd = add_halves(x[2], x[3]);
     return Pack<T, N>(__builtin_shufflevector(ab.v, cd.v, 0, 1, 2, 3, 8, 9, 10, 11, 16, 17, 18, 19, 24, 25, 26, 27)) +
            Pack<T, N>(__builtin_shufflevector(ab.v, cd.v, 4, 5, 6, 7, 12, 13, 14, 15, 20, 21, 22, 23, 28, 29, 30, 31));
   }
