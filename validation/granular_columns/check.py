@@ -42,8 +42,9 @@ def main():
         check.band(f"run-out over the experiments' laws, a = {aspect:g}", min(ratios, key=lambda r: abs(np.log(r))), 2.5, lower=0.5)
     slope = np.diff(np.log(run_out)) / np.diff(np.log(aspects))
     check.note("exponent from one column to the next: " + ", ".join(f"{s:.2f}" for s in slope))
-    check.band("exponent between a = 0.5 and 1 (laws: 1)", slope[0], 1.35, lower=0.75)
-    check.band("exponent between a = 2 and 3 (laws: 0.65 … 0.9, the continuum's 1 up to a = 7)", slope[-1], 1.0, lower=0.5)
+    if not check.quick:  # the lowest column is seven coarse cells high: too few for a trend
+        check.band("exponent between a = 0.5 and 1 (laws: 1)", slope[0], 1.35, lower=0.75)
+        check.band("exponent between a = 2 and 3 (laws: 0.65 … 0.9, the continuum's 1 up to a = 7)", slope[-1], 1.0, lower=0.5)
     axes = plt.figure(figsize=(6, 4.5), layout="constrained").gca()
     fine = np.linspace(0.3, 4, 200)
     for law in LAWS:
