@@ -24,7 +24,9 @@ std::vector<double> as_doubles(const RawArray& array) {
 Arrays arrays_of(const Solver& solver) {
   Arrays all;
   for (const RawArray& a : solver.save())
-    all[a.name] = a.type == "f4" ? as_doubles<float>(a) : (a.type == "f8" ? as_doubles<double>(a) : (a.type == "u4" ? as_doubles<std::uint32_t>(a) : as_doubles<long>(a)));
+    all[a.name] = a.type == "f4"
+                      ? as_doubles<float>(a)
+                      : (a.type == "f8" ? as_doubles<double>(a) : (a.type == "u4" ? as_doubles<std::uint32_t>(a) : as_doubles<long>(a)));
   return all;
 }
 
@@ -72,7 +74,9 @@ std::map<std::string, Difference> compare(const Model& model, Solver& solver, do
     const std::string body = "body" + std::to_string(b) + "_";
     REQUIRE(before.at(body + "id") == after.at(body + "id"));  // no sort in between
     const ReferenceBody<double>& r = state.bodies[b];
-    const auto fast = [&](const std::string& name, std::size_t k, std::size_t a) { return after.at(body + name + "_" + std::to_string(k))[a]; };
+    const auto fast = [&](const std::string& name, std::size_t k, std::size_t a) {
+      return after.at(body + name + "_" + std::to_string(k))[a];
+    };
     for (std::size_t a = 0; a < r.mass.size(); ++a) {
       found[body + "compression"].add(after.at(body + "compression")[a], r.compression[a]);
       for (std::size_t d = 0; d < std::size_t(model.dim); ++d) {
@@ -82,7 +86,8 @@ std::map<std::string, Difference> compare(const Model& model, Solver& solver, do
           if (after.count(body + "affine_0")) found["affine"].add(fast("affine", d * std::size_t(model.dim) + k, a), r.affine[a][d][k]);
       }
       for (std::size_t k = 0; k < r.history[a].size(); ++k) {
-        const bool strain = r.history[a].size() % 2 == 1 && k + 1 == r.history[a].size() && r.history[a].size() != 9;  // stress and plastic strain
+        const bool strain =
+            r.history[a].size() % 2 == 1 && k + 1 == r.history[a].size() && r.history[a].size() != 9;  // stress and plastic strain
         found[body + (strain ? "plastic_strain" : "history")].add(fast("history", k, a), r.history[a][k]);
       }
     }

@@ -18,9 +18,10 @@ inline deck::DruckerPrager sand() {
   return m;
 }
 
-/// A body of jittered particles, 2 per cell and axis, in the box of cells [lower, upper), with smooth random velocity, compression and (for solids) stress.
-inline Body jittered_body(const std::string& name, const deck::Material& material, int dim, const Point& lower, const Point& upper, double cell_size, std::uint32_t first_id,
-                          double speed, double stress) {
+/// A body of jittered particles, 2 per cell and axis, in the box of cells [lower, upper), with smooth random velocity, compression and (for
+/// solids) stress.
+inline Body jittered_body(const std::string& name, const deck::Material& material, int dim, const Point& lower, const Point& upper,
+                          double cell_size, std::uint32_t first_id, double speed, double stress) {
   Body body{name, material, {}};
   std::mt19937_64 random(first_id + 7);
   std::uniform_real_distribution<double> unit(-1, 1);
@@ -31,7 +32,8 @@ inline Body jittered_body(const std::string& name, const deck::Material& materia
         Point X{x, y, z};
         for (int d = 0; d < dim; ++d) X[std::size_t(d)] += 0.22 * unit(random);
         Point v{};
-        for (int d = 0; d < dim; ++d) v[std::size_t(d)] = speed * (std::sin(0.4 * X[0] + d) - 0.7 * std::cos(0.3 * X[1] - d) + 0.2 * unit(random));
+        for (int d = 0; d < dim; ++d)
+          v[std::size_t(d)] = speed * (std::sin(0.4 * X[0] + d) - 0.7 * std::cos(0.3 * X[1] - d) + 0.2 * unit(random));
         body.initial.id.push_back(first_id + std::uint32_t(body.initial.id.size()));
         body.initial.position.push_back(X), body.initial.velocity.push_back(v);
         body.initial.mass.push_back(density * std::pow(cell_size / 2, dim) * (1 + 0.2 * unit(random)));
@@ -55,7 +57,8 @@ inline RigidObstacle tilted_ground(int dim, const Point& through, deck::ContactK
 }
 
 /// Two touching bodies in a corner of the domain, pressed against its faces, and a tilted obstacle.
-inline Model busy_scene(int dim, const deck::Method& method, const deck::Material& first, const deck::Material& second, deck::ContactKind kind) {
+inline Model busy_scene(int dim, const deck::Method& method, const deck::Material& first, const deck::Material& second,
+                        deck::ContactKind kind) {
   Model model;
   model.dim = dim, model.method = method;
   model.cells = dim == 2 ? std::array<int, 3>{24, 19, 1} : std::array<int, 3>{13, 9, 10};
@@ -69,8 +72,10 @@ inline Model busy_scene(int dim, const deck::Method& method, const deck::Materia
   }
   const double top = dim == 2 ? model.cells[1] : 5;
   model.bodies.push_back(jittered_body("one", first, dim, {0, 0, 0}, {7, top, 5}, model.cell_size, 0, 0.8, 500));
-  model.bodies.push_back(jittered_body("two", second, dim, {7, 0, 0}, {dim == 2 ? 24. : 13., dim == 2 ? 6. : 9., 4}, model.cell_size, 100000, 0.8, 500));
-  model.obstacles.push_back(tilted_ground(dim, dim == 2 ? Point{13, 3, 0} : Point{8, 4, 2}, kind == deck::ContactKind::slip ? deck::ContactKind::friction : kind, 0.3));
+  model.bodies.push_back(
+      jittered_body("two", second, dim, {7, 0, 0}, {dim == 2 ? 24. : 13., dim == 2 ? 6. : 9., 4}, model.cell_size, 100000, 0.8, 500));
+  model.obstacles.push_back(tilted_ground(dim, dim == 2 ? Point{13, 3, 0} : Point{8, 4, 2},
+                                          kind == deck::ContactKind::slip ? deck::ContactKind::friction : kind, 0.3));
   return model;
 }
 
