@@ -44,6 +44,7 @@ struct DruckerPrager {
   struct Returned {
     Real mean, shear;     // σ_m and τ, Pa
     Real plastic_strain;  // Δε_eq,p
+    Real opening;         // volume strain that the tension cut-off took, ≥ 0
   };
 
   /// Slope of the border between shear and tensile failure, from the corner (σᵗ, τ^P) into the trial states above the cut-off:
@@ -66,7 +67,9 @@ struct DruckerPrager {
     const Real lambda_s = select(outside > Real(0), fs / (G + sideways * q), Real(0));             // A.16
     const Real lambda_t = select(ft < Real(0), Real(0), select(h > Real(0), Real(0), ft / bulk));  // zone III, A.11 and A.19
     Returned<Real> end;
-    end.mean = min(trial_mean - sideways * lambda_s, cutoff);  // A.12, A.17 and the corner
+    const Real sheared_mean = trial_mean - sideways * lambda_s;  // A.12
+    end.mean = min(sheared_mean, cutoff);                        // A.17 and the corner
+    end.opening = (sheared_mean - end.mean) / bulk;
     // One clamp is A.13 in zone II, the corner where that was passed, and what keeps zone III below the cone (A.17 keeps τ).
     end.shear = max(min(trial_shear, k - q * end.mean), Real(0));
     end.plastic_strain = lambda_s * Real(shear_strain_factor()) + Real(0.47140452079103168) * lambda_t;  // A.15 and A.18 (√2/3)
@@ -75,13 +78,16 @@ struct DruckerPrager {
 
   template <class Real, int Dim>
   JAXMPM_INLINE Real update(const Matrix<Real, Dim>& H, Real, Real& compression, Real* history) const {
-    compression = compress(compression, trace(H));
     Symmetric<Real, Dim> sigma = elasticity.trial_stress(read_symmetric<Real, Dim>(history), H);
     const Real trial_mean = mean(sigma);
     sigma = deviator(sigma);
     // The floor (1e-18 Pa) keeps τ^{n+1}/τ and the derivative of the root finite where there is no shear.
     const Real trial_shear = sqrt(max(half_square(sigma), Real(1e-36)));  // A.4
     const Returned<Real> end = return_to_surface(trial_mean, trial_shear);
+    // What the cut-off takes off the mean stress is a gap that opens, no growth of the grains' volume: without this, grains that fly apart
+    // swell without bound, stiffen (K V/m) and shorten the time step. As a fluid's tension limit does, the density is cut with the
+    // pressure.
+    compression = compress(compression, trace(H) - end.opening);
     const Real scale = end.shear / trial_shear;
     for (int k = 0; k < sigma.size; ++k) sigma[k] = scale * sigma[k];  // A.14
     for (int k = 0; k < 3; ++k) sigma[k] = sigma[k] + end.mean;
