@@ -96,7 +96,7 @@ TEST_CASE("the resolved deck reads back as the same deck") {
   CHECK(read_text(test::small_deck).resolved.find("\"tension_limit\": \"none\"") != std::string::npos);
 }
 
-TEST_CASE("--set changes and adds keys before the check") {
+TEST_CASE("assignments (--set) change and add keys before the check") {
   const deck::Deck d =
       read_text(test::small_deck, {"/time/end=0.5", "/bodies/0/name=lake", "/method={\"basis\": \"cubic\"}", "/method/transfer=flip",
                                    "/bodies/0/shape/box/max/0=0.4", "/walls={\"x_min\": {\"kind\": \"no_slip\"}}"});
@@ -110,7 +110,7 @@ TEST_CASE("--set changes and adds keys before the check") {
   CHECK(d.as_given == test::small_deck);
 }
 
-TEST_CASE("--set that makes no sense is a problem of the deck") {
+TEST_CASE("an assignment (--set) that makes no sense is a problem of the deck") {
   const auto only = [](const std::string& assignment) {
     const std::vector<Problem> problems = problems_of({assignment});
     REQUIRE(problems.size() == 1);
