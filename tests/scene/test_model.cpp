@@ -86,7 +86,7 @@ std::size_t built_count(const std::filesystem::path& path) {
 
 }  // namespace
 
-TEST_CASE("Every deck of inputs/ builds; the large ones have the issue's particle counts") {
+TEST_CASE("Every deck of inputs/ builds and the large ones have the issue's particle counts") {
   const std::map<std::string, std::size_t> counts{
       {"dam_break_3d", 1920000}, {"dam_break_friction", 6000}, {"granular_cylinder", 2712960}, {"granular_column_3d", 2408448}};
   for (const auto& entry : std::filesystem::directory_iterator(JAXMPM_SOURCE_DIR "/inputs")) {

@@ -68,7 +68,7 @@ TEST_CASE("mass and linear momentum are kept by every scheme") {
   for (std::size_t d = 0; d < std::size_t(dim); ++d) CHECK(std::abs(after.linear[d] - before.linear[d]) < 1e-13 * before.scale);
 }
 
-TEST_CASE("APIC keeps angular momentum with its affine part; the drift of the others is printed") {
+TEST_CASE("APIC keeps angular momentum with its affine part and the drift of the others is printed") {
   const int dim = GENERATE(2, 3);
   deck::Method method;
   method.basis = GENERATE(deck::Basis::quadratic, deck::Basis::cubic);
