@@ -11,11 +11,17 @@ from harness import DECK, DONE, INPUTS, IO, STOPPED, ProgramTest, small_deck, st
 
 class Resume(ProgramTest):
     def long_deck(self, **changes):
-        """Long enough to be stopped on the way."""
-        deck = small_deck(time={"end": 0.4})
+        """Long enough to be stopped on the way: some tenths of a second on one core."""
+        deck = small_deck(time={"end": 0.4}, domain={"min": [0, 0], "max": [1.0, 0.5], "cell_size": 0.0125})
         deck["output"] = {"interval": 0.02, "gauge_interval": 0.004, "checkpoint_interval_minutes": 0.002}
         deck.update(changes)
         return self.write(deck)
+
+    def seconds(self, deck, out):
+        """Wall time of a whole run, s: what the moments to stop at are chosen from, so that they fall within the run on any machine."""
+        begun = time.monotonic()
+        self.run_deck(deck, out)
+        return time.monotonic() - begun
 
     def begin(self, deck, out, *more):
         return self.start("run", deck, "-o", out, "--threads", "1", *more)
@@ -42,10 +48,10 @@ class Resume(ProgramTest):
 
     def test_wall_time(self):
         deck = self.long_deck()
-        self.run_deck(deck, "whole")
-        self.run_deck(deck, "out", "--max-walltime", "0.004", code=STOPPED)
+        minutes = f"{self.seconds(deck, 'whole') / 60 / 4:.7f}"
+        self.run_deck(deck, "out", "--max-walltime", minutes, code=STOPPED)
         for _ in range(200):
-            done = self.call("run", deck, "-o", "out", "--threads", "1", "--resume", "auto", "--max-walltime", "0.004")
+            done = self.call("run", deck, "-o", "out", "--threads", "1", "--resume", "auto", "--max-walltime", minutes)
             if done.returncode == DONE:
                 break
             self.assertEqual(done.returncode, STOPPED, done.stderr)
@@ -53,14 +59,13 @@ class Resume(ProgramTest):
 
     def test_kill_at_any_moment(self):
         deck = self.long_deck()
-        self.run_deck(deck, "whole")
-        self.run_deck(deck, "timed")
+        whole = self.seconds(deck, "whole")
         rng = random.Random(1)
         kills = 0
         for _ in range(60):
             process = self.begin(deck, "out", "--resume", "auto")
             try:
-                process.communicate(timeout=rng.uniform(0.02, 0.6))
+                process.communicate(timeout=rng.uniform(0.1, 0.6) * whole)
             except Exception:
                 process.kill()
                 process.communicate()
