@@ -1,0 +1,23 @@
+#pragma once
+// What looks at a run and turns it into one number, the loss, as the differentiated run sees it.
+#include "solvers/model_gradient.hpp"
+#include "solvers/time_control.hpp"
+
+namespace jaxmpm {
+
+class Observer {
+ public:
+  virtual ~Observer() = default;
+  /// Times, s, increasing, at which it looks; an automatic step is shortened to meet them, a fixed one takes the nearest step.
+  virtual const std::vector<double>& times() const = 0;
+  /// Fields that look() needs besides id, position, mass, density and volume.
+  virtual FieldSelection needs() const = 0;
+  /// Takes in the state at times()[index], bodies in deck order, particles in order of ids. Called once per time, in order, in every run.
+  virtual void look(std::size_t index, const Moment& now, const std::vector<BodySnapshot>& bodies) = 0;
+  /// The loss, once all times have been looked at.
+  virtual double loss() const = 0;
+  /// ∂loss/∂(what look() saw at times()[index]). Asked for after the run, for each index, in descending order.
+  virtual SnapshotGradient gradient(std::size_t index) const = 0;
+};
+
+}  // namespace jaxmpm
