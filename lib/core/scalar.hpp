@@ -25,6 +25,10 @@ JAXMPM_INLINE float exp(float x) { return std::exp(x); }
 JAXMPM_INLINE double exp(double x) { return std::exp(x); }
 JAXMPM_INLINE float log(float x) { return std::log(x); }
 JAXMPM_INLINE double log(double x) { return std::log(x); }
+JAXMPM_INLINE float sin(float x) { return std::sin(x); }
+JAXMPM_INLINE double sin(double x) { return std::sin(x); }
+JAXMPM_INLINE float cos(float x) { return std::cos(x); }
+JAXMPM_INLINE double cos(double x) { return std::cos(x); }
 JAXMPM_INLINE float log1p(float x) { return std::log1p(x); }
 JAXMPM_INLINE double log1p(double x) { return std::log1p(x); }
 

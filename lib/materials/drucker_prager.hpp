@@ -9,25 +9,29 @@
 namespace jaxmpm {
 
 template <class Scalar>
-struct DruckerPrager {
-  Scalar density;  // ρ0, kg/m³
-  IsotropicElasticity<Scalar> elasticity;
+struct DruckerPrager : RateElastic<Scalar> {
   Scalar friction;        // q_φ = 6 sin φ / (√3 (3 + sin φ))
   Scalar cohesion;        // k_φ = 6 c cos φ / (√3 (3 + sin φ)), Pa
   Scalar dilation;        // q_ψ = 6 sin ψ / (√3 (3 + sin ψ))
   Scalar tension_cutoff;  // σᵗ, Pa, at most k_φ/q_φ (the apex)
 
-  static DruckerPrager from(const deck::DruckerPrager& m) {
-    const ElasticModuli moduli = elastic_moduli(m);
-    const double degree = std::acos(-1.0) / 180;
-    const double sin_phi = std::sin(m.friction_angle * degree), cos_phi = std::cos(m.friction_angle * degree);
-    const double sin_psi = std::sin(m.dilation_angle * degree), root3 = std::sqrt(3.0);
-    return {Scalar(m.density),
-            {Scalar(moduli.bulk), Scalar(moduli.shear)},
-            Scalar(6 * sin_phi / (root3 * (3 + sin_phi))),
-            Scalar(6 * m.cohesion * cos_phi / (root3 * (3 + sin_phi))),
-            Scalar(6 * sin_psi / (root3 * (3 + sin_psi))),
-            Scalar(m.tension_cutoff)};
+  template <class Number = DeckNumber>
+  static DruckerPrager from(const deck::DruckerPrager& m, const Number& number = {}) {
+    using Exact = decltype(number(m.density));
+    const auto moduli = elastic_moduli(m, number);
+    const Exact degree(std::acos(-1.0) / 180), root3(std::sqrt(3.0)), three(3), six(6);
+    const Exact sin_phi = sin(number(m.friction_angle) * degree), cos_phi = cos(number(m.friction_angle) * degree);
+    const Exact sin_psi = sin(number(m.dilation_angle) * degree);
+    return {{Scalar(number(m.density)), {Scalar(moduli.bulk), Scalar(moduli.shear)}},
+            Scalar(six * sin_phi / (root3 * (three + sin_phi))),
+            Scalar(six * number(m.cohesion) * cos_phi / (root3 * (three + sin_phi))),
+            Scalar(six * sin_psi / (root3 * (three + sin_psi))),
+            Scalar(number(m.tension_cutoff))};
+  }
+  template <class Law>
+  static auto constants(Law& law) {
+    return std::array{&law.density,  &law.elasticity.bulk, &law.elasticity.shear, &law.friction,
+                      &law.cohesion, &law.dilation,        &law.tension_cutoff};
   }
 
   template <int Dim>
@@ -51,14 +55,14 @@ struct DruckerPrager {
   /// α^P of Eq A.8, or the return direction (K q_ψ, G) where that lies below it.
   JAXMPM_INLINE Scalar border_slope() const {
     const Scalar alpha = sqrt(Scalar(1) + friction * friction) - friction;
-    const Scalar sideways = elasticity.bulk * dilation;
-    return select(alpha * sideways > elasticity.shear, elasticity.shear / sideways, alpha);
+    const Scalar sideways = this->elasticity.bulk * dilation;
+    return select(alpha * sideways > this->elasticity.shear, this->elasticity.shear / sideways, alpha);
   }
 
   /// Returns a trial state to the surface (Eqs A.5–A.19).
   template <class Real>
   JAXMPM_INLINE Returned<Real> return_to_surface(Real trial_mean, Real trial_shear) const {
-    const Real q(friction), k(cohesion), cutoff(tension_cutoff), bulk(elasticity.bulk), G(elasticity.shear);
+    const Real q(friction), k(cohesion), cutoff(tension_cutoff), bulk(this->elasticity.bulk), G(this->elasticity.shear);
     const Real fs = trial_shear - k + q * trial_mean;                                              // A.5
     const Real ft = trial_mean - cutoff;                                                           // A.6
     const Real h = trial_shear - (k - q * cutoff) - Real(border_slope()) * ft;                     // A.7
@@ -78,7 +82,7 @@ struct DruckerPrager {
 
   template <class Real, int Dim>
   JAXMPM_INLINE Real update(const Matrix<Real, Dim>& H, Real, Real& compression, Real* history) const {
-    Symmetric<Real, Dim> sigma = elasticity.trial_stress(read_symmetric<Real, Dim>(history), H);
+    Symmetric<Real, Dim> sigma = this->elasticity.trial_stress(read_symmetric<Real, Dim>(history), H);
     const Real trial_mean = mean(sigma);
     sigma = deviator(sigma);
     // The floor (1e-18 Pa) keeps τ^{n+1}/τ and the derivative of the root finite where there is no shear.
@@ -94,24 +98,8 @@ struct DruckerPrager {
     write_symmetric(sigma, history);
     history[sigma.size] = history[sigma.size] + end.plastic_strain;
     // σ : Δε^p with Δε^p = C⁻¹ : (σ_trial − σ).
-    return end.shear * (trial_shear - end.shear) / Real(elasticity.shear) + end.mean * (trial_mean - end.mean) / Real(elasticity.bulk);
-  }
-
-  template <class Real, int Dim>
-  JAXMPM_INLINE Symmetric<Real, Dim> stress(Real, const Real* history) const {
-    return read_symmetric<Real, Dim>(history);
-  }
-
-  template <class Real, int Dim>
-  JAXMPM_INLINE Real wave_speed(Real compression, const Real*) const {
-    return elasticity.wave_speed(density, compression);
-  }
-
-  JAXMPM_INLINE Scalar diffusivity() const { return Scalar(0); }
-
-  template <class Real, int Dim>
-  JAXMPM_INLINE Real energy(Real, const Real* history) const {
-    return elasticity.energy(read_symmetric<Real, Dim>(history));
+    return end.shear * (trial_shear - end.shear) / Real(this->elasticity.shear) +
+           end.mean * (trial_mean - end.mean) / Real(this->elasticity.bulk);
   }
 
   template <class Real, int Dim>

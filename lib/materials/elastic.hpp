@@ -1,6 +1,7 @@
 #pragma once
 // Isotropic linear elasticity with an objective rate: what linear_elastic and drucker_prager share; and the elastic constants of a deck's
 // materials.
+#include <array>
 #include <optional>
 #include <variant>
 
@@ -78,31 +79,78 @@ struct IsotropicElasticity {
   }
 };
 
-/// Elastic constants of a material of the deck.
-struct ElasticModuli {
-  double bulk = 0, shear = 0;  // Pa
-  double poisson_ratio() const { return (3 * bulk - 2 * shear) / (2 * (3 * bulk + shear)); }
-  double lame() const { return bulk - 2 * shear / 3; }
+/// What solids with a stress rate share: parameters and everything but the update. The first history values are the Cauchy stress.
+template <class Scalar>
+struct RateElastic {
+  Scalar density;  // ρ0, kg/m³
+  IsotropicElasticity<Scalar> elasticity;
 
-  static ElasticModuli from_young(double young, double poisson) { return {young / (3 * (1 - 2 * poisson)), young / (2 * (1 + poisson))}; }
+  template <class Real, int Dim>
+  JAXMPM_INLINE Symmetric<Real, Dim> stress(Real, const Real* history) const {
+    return read_symmetric<Real, Dim>(history);
+  }
+  template <class Real, int Dim>
+  JAXMPM_INLINE Real wave_speed(Real compression, const Real*) const {
+    return elasticity.wave_speed(density, compression);
+  }
+  JAXMPM_INLINE Scalar diffusivity() const { return Scalar(0); }
+  template <class Real, int Dim>
+  JAXMPM_INLINE Real energy(Real, const Real* history) const {
+    return elasticity.energy(read_symmetric<Real, Dim>(history));
+  }
 };
 
-inline ElasticModuli elastic_moduli(const deck::LinearElastic& m) { return ElasticModuli::from_young(m.youngs_modulus, m.poisson_ratio); }
-inline ElasticModuli elastic_moduli(const deck::NeoHookean& m) { return ElasticModuli::from_young(m.youngs_modulus, m.poisson_ratio); }
+/// Elastic constants of a material of the deck, doubles or dual numbers.
+template <class Real = double>
+struct ElasticModuli {
+  Real bulk{}, shear{};  // Pa
+  Real poisson_ratio() const { return (Real(3) * bulk - Real(2) * shear) / (Real(2) * (Real(3) * bulk + shear)); }
+  Real lame() const { return bulk - Real(2) * shear / Real(3); }
 
-/// A fluid: K = ρ0 c², no shear stiffness, so that its Poisson ratio is 1/2.
-inline ElasticModuli elastic_moduli(const deck::Newtonian& m) { return {m.density * m.sound_speed * m.sound_speed, 0}; }
+  static ElasticModuli from_young(Real young, Real poisson) {
+    return {young / (Real(3) * (Real(1) - Real(2) * poisson)), young / (Real(2) * (Real(1) + poisson))};
+  }
+};
 
-/// From the two constants that the deck gives (the reader has checked that there are exactly two).
-inline ElasticModuli elastic_moduli(const deck::DruckerPrager& m) {
-  if (!m.bulk_modulus) return ElasticModuli::from_young(m.youngs_modulus.value(), m.poisson_ratio.value());
-  const double bulk = *m.bulk_modulus;
-  if (!m.youngs_modulus) return {bulk, 3 * bulk * (1 - 2 * m.poisson_ratio.value()) / (2 * (1 + m.poisson_ratio.value()))};
-  return {bulk, 3 * bulk * *m.youngs_modulus / (9 * bulk - *m.youngs_modulus)};
+template <class Material, class Number>
+auto moduli_from_young(const Material& m, const Number& number) {
+  return ElasticModuli<decltype(number(m.youngs_modulus))>::from_young(number(m.youngs_modulus), number(m.poisson_ratio));
+}
+template <class Number = DeckNumber>
+auto elastic_moduli(const deck::LinearElastic& m, const Number& number = {}) {
+  return moduli_from_young(m, number);
+}
+template <class Number = DeckNumber>
+auto elastic_moduli(const deck::NeoHookean& m, const Number& number = {}) {
+  return moduli_from_young(m, number);
 }
 
-inline ElasticModuli elastic_moduli(const deck::Material& material) {
-  return std::visit([](const auto& m) { return elastic_moduli(m); }, material);
+/// A fluid: K = ρ0 c², no shear stiffness, so that its Poisson ratio is 1/2.
+template <class Number = DeckNumber>
+auto elastic_moduli(const deck::Newtonian& m, const Number& number = {}) {
+  using Real = decltype(number(m.density));
+  const Real c = number(m.sound_speed);
+  return ElasticModuli<Real>{number(m.density) * c * c, Real(0)};
+}
+
+/// From the two constants that the deck gives (the reader has checked that there are exactly two).
+template <class Number = DeckNumber>
+auto elastic_moduli(const deck::DruckerPrager& m, const Number& number = {}) {
+  using Real = decltype(number(m.density));
+  using Moduli = ElasticModuli<Real>;
+  if (!m.bulk_modulus) return Moduli::from_young(number(m.youngs_modulus.value()), number(m.poisson_ratio.value()));
+  const Real bulk = number(*m.bulk_modulus);
+  if (m.youngs_modulus) {
+    const Real young = number(*m.youngs_modulus);
+    return Moduli{bulk, Real(3) * bulk * young / (Real(9) * bulk - young)};
+  }
+  const Real poisson = number(m.poisson_ratio.value());
+  return Moduli{bulk, Real(3) * bulk * (Real(1) - Real(2) * poisson) / (Real(2) * (Real(1) + poisson))};
+}
+
+template <class Number = DeckNumber>
+auto elastic_moduli(const deck::Material& material, const Number& number = {}) {
+  return std::visit([&](const auto& m) { return elastic_moduli(m, number); }, material);
 }
 
 }  // namespace jaxmpm

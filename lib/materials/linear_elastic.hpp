@@ -6,13 +6,15 @@
 namespace jaxmpm {
 
 template <class Scalar>
-struct LinearElastic {
-  Scalar density;  // ρ0, kg/m³
-  IsotropicElasticity<Scalar> elasticity;
-
-  static LinearElastic from(const deck::LinearElastic& m) {
-    const ElasticModuli moduli = elastic_moduli(m);
-    return {Scalar(m.density), {Scalar(moduli.bulk), Scalar(moduli.shear)}};
+struct LinearElastic : RateElastic<Scalar> {
+  template <class Number = DeckNumber>
+  static LinearElastic from(const deck::LinearElastic& m, const Number& number = {}) {
+    const auto moduli = elastic_moduli(m, number);
+    return {{Scalar(number(m.density)), {Scalar(moduli.bulk), Scalar(moduli.shear)}}};
+  }
+  template <class Law>
+  static auto constants(Law& law) {
+    return std::array{&law.density, &law.elasticity.bulk, &law.elasticity.shear};
   }
 
   template <int Dim>
@@ -27,25 +29,8 @@ struct LinearElastic {
   template <class Real, int Dim>
   JAXMPM_INLINE Real update(const Matrix<Real, Dim>& H, Real, Real& compression, Real* history) const {
     compression = compress(compression, trace(H));
-    write_symmetric(elasticity.trial_stress(read_symmetric<Real, Dim>(history), H), history);
+    write_symmetric(this->elasticity.trial_stress(read_symmetric<Real, Dim>(history), H), history);
     return Real(0);
-  }
-
-  template <class Real, int Dim>
-  JAXMPM_INLINE Symmetric<Real, Dim> stress(Real, const Real* history) const {
-    return read_symmetric<Real, Dim>(history);
-  }
-
-  template <class Real, int Dim>
-  JAXMPM_INLINE Real wave_speed(Real compression, const Real*) const {
-    return elasticity.wave_speed(density, compression);
-  }
-
-  JAXMPM_INLINE Scalar diffusivity() const { return Scalar(0); }
-
-  template <class Real, int Dim>
-  JAXMPM_INLINE Real energy(Real, const Real* history) const {
-    return elasticity.energy(read_symmetric<Real, Dim>(history));
   }
 
   template <class Real, int Dim>

@@ -6,8 +6,10 @@
 //   template <class Scalar>                       // scalar of the parameters: the step's precision, double or a dual number
 //   struct SomeLaw {
 //     Scalar density; …
-//     /// The law of a deck's material.
-//     static SomeLaw from(const deck::SomeMaterial& material);
+//     /// The law of a deck's material. `number` reads the deck's numbers: as they are, or as dual numbers to differentiate by one of them.
+//     template <class Number = DeckNumber> static SomeLaw from(const deck::SomeMaterial& material, const Number& number = {});
+//     /// Pointers to all parameters, in a fixed order: what the adjoint differentiates by.
+//     template <class Law> static auto constants(Law& law);
 //     /// Number of history values a particle carries for this law (stress first, where it is carried).
 //     template <int Dim> static constexpr int history_size();
 //     /// Place of the plastic strain in the history, −1 where the law has none.
@@ -30,10 +32,21 @@
 //   };
 //
 // Pieces that laws share follow.
+#include "core/dual.hpp"
 #include "core/scalar.hpp"
 #include "core/tensor.hpp"
 
 namespace jaxmpm {
+
+/// Reads a number of the deck as it is.
+struct DeckNumber {
+  double operator()(const double& x) const { return x; }
+};
+/// Reads the numbers of the deck as dual numbers, with derivative 1 for the one at `by`.
+struct DeckNumberBy {
+  const double* by;
+  Dual<double, 1> operator()(const double& x) const { return &x == by ? Dual<double, 1>::variable(x, 0) : Dual<double, 1>(x); }
+};
 
 /// A symmetric tensor kept in a particle's history, in the order of Symmetric.
 template <class Real, int Dim>

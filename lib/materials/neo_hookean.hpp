@@ -29,9 +29,14 @@ struct NeoHookean {
   Scalar density;      // ρ0, kg/m³
   Scalar lame, shear;  // λ and μ, Pa
 
-  static NeoHookean from(const deck::NeoHookean& m) {
-    const ElasticModuli moduli = elastic_moduli(m);
-    return {Scalar(m.density), Scalar(moduli.lame()), Scalar(moduli.shear)};
+  template <class Number = DeckNumber>
+  static NeoHookean from(const deck::NeoHookean& m, const Number& number = {}) {
+    const auto moduli = elastic_moduli(m, number);
+    return {Scalar(number(m.density)), Scalar(moduli.lame()), Scalar(moduli.shear)};
+  }
+  template <class Law>
+  static auto constants(Law& law) {
+    return std::array{&law.density, &law.lame, &law.shear};
   }
 
   template <int Dim>

@@ -2,6 +2,7 @@
 // Weakly compressible Newtonian fluid (Du & He 2025, Eqs 19–20): p = c²(ρ − ρ0), s = 2μ dev d. The paper prints the increment Δd and its
 // determinant where the rate d and the trace are meant: s = 2μ dev d and ρ ← ρ/(1 + tr Δd). Two laws, so that an inviscid fluid carries no
 // history.
+#include <array>
 #include <limits>
 
 #include "deck/deck.hpp"
@@ -16,10 +17,12 @@ struct WeaklyCompressible {
   Scalar sound_speed;          // c, m/s: at least ten times the largest velocity
   Scalar minimum_compression;  // e below which pressure, and the density with it, is cut: −limit/(ρ0 c²); −∞ without a tension limit
 
-  static WeaklyCompressible from(const deck::Newtonian& m) {
-    const double bulk = m.density * m.sound_speed * m.sound_speed;
-    const double least = m.tension_limit ? -*m.tension_limit / bulk : -std::numeric_limits<double>::infinity();
-    return {Scalar(m.density), Scalar(m.sound_speed), Scalar(least)};
+  template <class Number = DeckNumber>
+  static WeaklyCompressible from(const deck::Newtonian& m, const Number& number = {}) {
+    using Exact = decltype(number(m.density));
+    const Exact density = number(m.density), c = number(m.sound_speed);
+    const Exact least = m.tension_limit ? -number(*m.tension_limit) / (density * c * c) : Exact(-std::numeric_limits<double>::infinity());
+    return {Scalar(density), Scalar(c), Scalar(least)};
   }
 
   template <class Real, int Dim>
@@ -56,7 +59,14 @@ struct WeaklyCompressible {
 /// μ = 0.
 template <class Scalar>
 struct InviscidFluid : WeaklyCompressible<Scalar> {
-  static InviscidFluid from(const deck::Newtonian& m) { return {WeaklyCompressible<Scalar>::from(m)}; }
+  template <class Number = DeckNumber>
+  static InviscidFluid from(const deck::Newtonian& m, const Number& number = {}) {
+    return {WeaklyCompressible<Scalar>::from(m, number)};
+  }
+  template <class Law>
+  static auto constants(Law& law) {
+    return std::array{&law.density, &law.sound_speed, &law.minimum_compression};
+  }
 
   template <int Dim>
   static constexpr JAXMPM_INLINE int history_size() {
@@ -87,7 +97,14 @@ template <class Scalar>
 struct ViscousFluid : WeaklyCompressible<Scalar> {
   Scalar viscosity;  // μ, Pa s
 
-  static ViscousFluid from(const deck::Newtonian& m) { return {WeaklyCompressible<Scalar>::from(m), Scalar(m.viscosity)}; }
+  template <class Number = DeckNumber>
+  static ViscousFluid from(const deck::Newtonian& m, const Number& number = {}) {
+    return {WeaklyCompressible<Scalar>::from(m, number), Scalar(number(m.viscosity))};
+  }
+  template <class Law>
+  static auto constants(Law& law) {
+    return std::array{&law.density, &law.sound_speed, &law.minimum_compression, &law.viscosity};
+  }
 
   template <int Dim>
   static constexpr JAXMPM_INLINE int history_size() {

@@ -44,7 +44,7 @@ TEST_CASE("Drucker-Prager: confined compression yields and flows as the cone say
 TEST_CASE("Drucker-Prager: triaxial compression at constant lateral stress fails at the cone's strength") {
   const double p0 = 5000;
   const Sand law = Sand::from(sand(28, 5, 800, 0));
-  const ElasticModuli moduli{law.elasticity.bulk, law.elasticity.shear};
+  const ElasticModuli<> moduli{law.elasticity.bulk, law.elasticity.shear};
   const double E = 9 * moduli.bulk * moduli.shear / (3 * moduli.bulk + moduli.shear);
   MaterialPoint<Sand, 3> point(law);
   point.start({{-p0, -p0, -p0, 0, 0, 0}});

@@ -24,7 +24,7 @@ TEST_CASE("elastic constants: any two of K, E and nu give the same K and G") {
   const ElasticModuli b = elastic_moduli(m);
   m.poisson_ratio.reset(), m.youngs_modulus = E;
   const ElasticModuli c = elastic_moduli(m);
-  for (const ElasticModuli& x : {a, b, c}) {
+  for (const auto& x : {a, b, c}) {
     CHECK(x.bulk == Approx(K).epsilon(1e-14));
     CHECK(x.shear == Approx(G).epsilon(1e-13));
     CHECK(x.poisson_ratio() == Approx(nu).epsilon(1e-13));
