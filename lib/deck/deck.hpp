@@ -103,6 +103,7 @@ struct Mlp {
   std::uint64_t seed = 1;
   Numbers input_scale;
   double output_scale = 1;
+  Numbers weights; /* empty: drawn from the seed */
 };
 using Component = std::variant<double, std::string, Mlp>;  // a number, an expression of x, y, z and parameters, a network
 struct ParticleFile {
@@ -208,6 +209,9 @@ struct Deck {
 /// Reads, applies `--set` assignments ("/pointer=JSON") and checks a deck. Throws DeckError with every problem at once, IoError if
 /// unreadable.
 Deck read_deck(const std::string& path, const std::vector<std::string>& assignments = {});
+
+/// The same deck with some values changed, read and checked anew; nothing is read from the file again. Throws DeckError.
+Deck with_assignments(const Deck& deck, const std::vector<std::string>& assignments);
 
 /// JSON Schema (draft 2020-12) of the deck, and its reference in Markdown; both from the same describe() functions as the reader.
 std::string schema();

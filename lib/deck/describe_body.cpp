@@ -36,6 +36,11 @@ void describe(Description<Mlp>& d) {
       .otherwise("1 for each input", [](Mlp& mlp, const described::Reader&) { mlp.input_scale.assign(mlp.inputs.size(), 1.0); })
       .help("Factor on each input.");
   d.optional("output_scale", &Mlp::output_scale).unit("m/s").help("Factor on the output.");
+  d.optional("weights", &Mlp::weights)
+      .items(1)
+      .absent_when_empty()
+      .otherwise("drawn from the seed")
+      .help("Layer by layer: the matrix row by row (one row for each output), then the biases. As an inversion finds them.");
   d.check({"inputs", "input_scale"}, [](const Mlp& mlp, const described::Place& place) {
     if (mlp.input_scale.size() != mlp.inputs.size())
       place.problem("input_scale", "must have one number for each of inputs, " + std::to_string(mlp.inputs.size()) + ", found " +

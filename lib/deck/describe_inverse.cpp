@@ -23,15 +23,9 @@ void check_bounds(const Unknown& u, const Place& place) {
 }
 
 void check_start(const Unknown& u, const Place& place) {
-  const auto right = [&](double value) {
-    if (u.transform == Transform::log && !(value > 0))
-      place.problem("start", "must be above 0 with transform \"log\", found " + shown_number(value));
-    else if (u.bounds && (value < (*u.bounds)[0] || value > (*u.bounds)[1]))
-      place.problem("start", shown_number(value) + " is outside of bounds; move one of them");
-  };
-  if (const auto* value = std::get_if<double>(&u.start)) right(*value);
+  if (const auto* value = std::get_if<double>(&u.start)) check_start_value(u, *value, "", place);
   if (const auto* values = std::get_if<Numbers>(&u.start))
-    for (const double value : *values) right(value);
+    for (const double value : *values) check_start_value(u, value, "", place);
 }
 
 /// Keys that all kinds of observation share.
@@ -69,6 +63,15 @@ void check_memory(const Inverse& inverse, const Place& place) {
 }
 
 }  // namespace
+
+void check_start_value(const Unknown& u, double value, const std::string& what, const Place& place) {
+  const std::string shown = what + shown_number(value);
+  if (u.transform == Transform::log && !(value > 0)) place.problem("start", shown + " is not above 0, as transform \"log\" needs");
+  else if (u.bounds && (value < (*u.bounds)[0] || value > (*u.bounds)[1]))
+    place.problem("start", shown + " is outside of bounds; move one of them");
+  else if (u.transform == Transform::logit && u.bounds && (value == (*u.bounds)[0] || value == (*u.bounds)[1]))
+    place.problem("start", shown + " is a bound, which transform \"logit\" reaches only at infinity; start within");
+}
 
 void describe(Description<Prior>& d) {
   d.is("prior", "Gaussian prior of an unknown.");

@@ -79,6 +79,15 @@ struct Inverse {
   std::string memory = "4 GiB";
 };
 
+/// The deck's /inverse, which reading the deck has checked. Throws DeckError when it has none.
+Inverse inverse_of(const Deck& deck);
+/// Reports a value outside of an unknown's bounds or of what its transform can take; `what` comes before the value in the message.
+void check_start_value(const Unknown& unknown, double value, const std::string& what, const described::Place& place);
+/// JSON pointers that a path with * stands for in a resolved deck, in the deck's order.
+std::vector<std::string> pointers_of(const std::string& path, const described::Json& resolved);
+/// Whether a pointer is that of a network, whose value is all its weights.
+bool is_network(const std::string& pointer);
+
 described::EnumNames<Transform> names_of(Transform);
 void describe(Description<Prior>& d);
 void describe(Description<Unknown>& d);

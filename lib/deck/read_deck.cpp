@@ -72,13 +72,12 @@ std::string resolved_text(const Deck& deck) {
   throw DeckError(std::move(problems));
 }
 
-}  // namespace
-
-Deck read_deck(const std::string& path, const std::vector<std::string>& assignments) {
+/// Reads and checks `text`, the deck of a file.
+Deck read_text(const std::string& path, const std::string& text, const std::vector<std::string>& assignments) {
   Deck deck;
   deck.path = path;
-  deck.as_given = text_of(path);
-  Document document = Document::parse(deck.as_given);
+  deck.as_given = text;
+  Document document = Document::parse(text);
   for (const std::string& assignment : assignments) document.assign(assignment);
 
   described::Reader reader([&document](const std::string& pointer) { return document.line(pointer); }, dimension_of(document.root()));
@@ -94,6 +93,16 @@ Deck read_deck(const std::string& path, const std::vector<std::string>& assignme
   if (!reader.problems().empty()) report(std::move(reader.problems()));
   deck.resolved = resolved_text(deck);
   return deck;
+}
+
+}  // namespace
+
+Deck read_deck(const std::string& path, const std::vector<std::string>& assignments) { return read_text(path, text_of(path), assignments); }
+
+Deck with_assignments(const Deck& deck, const std::vector<std::string>& assignments) {
+  Deck changed = read_text(deck.path, deck.resolved, assignments);
+  changed.as_given = deck.as_given;
+  return changed;
 }
 
 std::string schema() {

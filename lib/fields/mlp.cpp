@@ -50,7 +50,10 @@ Mlp::Mlp(const deck::Mlp& description, int dim, const std::string& pointer)
     widths_.push_back(description.hidden[i]);
   }
   widths_.push_back(1);
-  weights_ = initial_weights(widths_, description.seed);
+  weights_ = description.weights.empty() ? initial_weights(widths_, description.seed) : description.weights;
+  if (weights_.size() != weight_count(widths_))
+    throw DeckError(pointer + "/weights",
+                    "the network has " + std::to_string(weight_count(widths_)) + " weights, here are " + std::to_string(weights_.size()));
 }
 
 double Mlp::value(const std::array<double, 3>& place) const {
@@ -68,13 +71,6 @@ double Mlp::value(const std::array<double, 3>& place) const {
     now.swap(next);
   }
   return output_scale_ * now[0];
-}
-
-void Mlp::set_weights(std::vector<double> weights) {
-  if (weights.size() != weights_.size())
-    throw Error(ExitCode::deck,
-                "a network of " + std::to_string(weights_.size()) + " weights cannot take " + std::to_string(weights.size()));
-  weights_ = std::move(weights);
 }
 
 }  // namespace jaxmpm

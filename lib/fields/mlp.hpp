@@ -6,18 +6,17 @@
 namespace jaxmpm {
 
 /// value = output_scale · (W_L a_L + b_L), a_{l+1} = activation(W_l a_l + b_l), a_0 = inputs (m) times input_scale, entry by entry.
-/// Weights start as normal deviates with variance 2/n (He et al. 2015, Eq 10), n the layer's number of inputs, biases as zero; the draw
-/// depends on the seed alone (fields/random.hpp).
+/// Weights that the deck does not give start as normal deviates with variance 2/n (He et al. 2015, Eq 10), n the layer's number of inputs,
+/// biases as zero; the draw depends on the seed alone (fields/random.hpp).
 class Mlp : public Field {
  public:
-  /// Throws DeckError for inputs that are no coordinate, an unknown activation, or an input_scale of the wrong length (empty: ones).
+  /// Throws DeckError for inputs that are no coordinate, an unknown activation, or an input_scale (empty: ones) or weights of the wrong
+  /// length.
   Mlp(const deck::Mlp& description, int dim, const std::string& pointer);
   double value(const std::array<double, 3>& place) const override;
 
   /// All weights, layer by layer: the matrix row by row (one row for each output), then the biases.
   const std::vector<double>& weights() const { return weights_; }
-  /// Throws Error if the number of weights is another.
-  void set_weights(std::vector<double> weights);
 
  private:
   std::vector<int> inputs_;    // coordinate index of each

@@ -91,8 +91,8 @@ inline const char* const full_deck = R"({
   "output": { "interval": 0.02, "directory": "out/all", "gauge_interval": 0.001, "formats": ["hdf5"], "fields": ["velocity"], "checkpoint_interval_minutes": 5 },
   "inverse": {
     "unknowns": [ { "path": "/walls/z_min/segments/*/coefficient", "start": [0.1, 0.2], "bounds": [0, 1], "transform": "logit", "prior": { "mean": 0.3, "deviation": 0.1 } },
-                  { "path": "/bodies/2/velocity/1/mlp", "start": 4 },
-                  { "path": "/materials/*/density", "share": true, "transform": "log" } ],
+                  { "path": "/bodies/2/velocity/1/mlp", "prior": { "mean": 0, "deviation": 1 } },
+                  { "path": "/materials/*/density", "start": 1200, "share": true, "transform": "log" } ],
     "observations": [
       { "kind": "particles", "body": "pool", "field": "position", "file": "t.h5", "select": { "random": 500, "seed": 1 }, "from_time": 0, "to_time": 1, "every": 0.1 },
       { "kind": "gauge", "gauge": "front", "file": "g.csv", "weight": 2, "noise": { "deviation": 0.1, "seed": 2 }, "mask": "good" },

@@ -96,6 +96,16 @@ TEST_CASE("the resolved deck reads back as the same deck") {
   CHECK(read_text(test::small_deck).resolved.find("\"tension_limit\": \"none\"") != std::string::npos);
 }
 
+TEST_CASE("a deck that was read takes other values without its file") {
+  const deck::Deck first = read_text(test::full_deck, {"/time/end=0.75"});
+  const deck::Deck second = deck::with_assignments(first, {"/materials/water/density=990.5"});
+  CHECK(second.time.end == 0.75);
+  CHECK(std::get<deck::Newtonian>(second.materials.at("water")).density == 990.5);
+  CHECK(second.path == first.path);
+  CHECK(second.as_given == first.as_given);
+  CHECK_THROWS_AS(deck::with_assignments(first, {"/materials/water/density=-1"}), DeckError);
+}
+
 TEST_CASE("assignments (--set) change and add keys before the check") {
   const deck::Deck d =
       read_text(test::small_deck, {"/time/end=0.5", "/bodies/0/name=lake", "/method={\"basis\": \"cubic\"}", "/method/transfer=flip",

@@ -35,16 +35,15 @@ TEST_CASE("A network is the sum it should be, and its start depends on the seed 
   description.hidden = {2};
   description.input_scale = {10, 1};
   description.output_scale = 3;
-  Mlp mlp(description, 2, "/mlp");
-  REQUIRE(mlp.weights().size() == 9);
-  mlp.set_weights({1, 2, -1, -2, 0.5, 0.25, 4, 5, 6});
+  REQUIRE(Mlp(description, 2, "/mlp").weights().size() == 9);
+  deck::Mlp weighted = description;
+  weighted.weights = {1, 2, -1, -2, 0.5, 0.25, 4, 5, 6};
+  const Mlp mlp(weighted, 2, "/mlp");
   // hidden: relu(10 y + 2 x + 0.5), relu(−10 y − 2 x + 0.25)
   CHECK(mlp.value({0.1, 0.2, 0}) == Approx(3 * (4 * (2 + 0.2 + 0.5) + 6)));
   CHECK(mlp.value({-0.1, -0.2, 0}) == Approx(3 * (5 * (2 + 0.2 + 0.25) + 6)));
-  CHECK_THROWS_AS(mlp.set_weights({1}), Error);
-  description.activation = "tanh";
-  Mlp smooth(description, 2, "/mlp");
-  smooth.set_weights({1, 2, -1, -2, 0.5, 0.25, 4, 5, 6});
+  weighted.activation = description.activation = "tanh";
+  const Mlp smooth(weighted, 2, "/mlp");
   CHECK(smooth.value({0.1, 0.2, 0}) == Approx(3 * (4 * std::tanh(2.7) + 5 * std::tanh(-1.95) + 6)));
   CHECK(Mlp(description, 2, "/mlp").weights() == Mlp(description, 2, "/mlp").weights());
   const auto first = Mlp(description, 2, "/mlp").weights();
@@ -52,6 +51,8 @@ TEST_CASE("A network is the sum it should be, and its start depends on the seed 
   CHECK(Mlp(description, 2, "/mlp").weights() != first);
   description.inputs = {"z", "x"};
   CHECK_THROWS_AS(Mlp(description, 2, "/mlp"), DeckError);
+  weighted.weights.pop_back();
+  CHECK_THROWS_WITH(Mlp(weighted, 2, "/mlp"), Catch::Contains("/mlp/weights") && Catch::Contains("9 weights, here are 8"));
 }
 
 TEST_CASE("A network's weights start with the variance of He et al.") {
