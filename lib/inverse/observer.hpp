@@ -16,6 +16,9 @@ class Observer {
   virtual void look(std::size_t index, const Moment& now, const std::vector<BodySnapshot>& bodies) = 0;
   /// The loss, once all times have been looked at.
   virtual double loss() const = 0;
+  /// What the loss is made of, once all times have been looked at: weighted residuals whose half sum of squares is loss(). Their number and
+  /// order are the same in every run; what is masked or has no material is 0.
+  virtual const std::vector<double>& residuals() const = 0;
   /// ∂loss/∂(what look() saw at times()[index]). Asked for after the run, for each index, in descending order.
   virtual SnapshotGradient gradient(std::size_t index) const = 0;
 };
