@@ -1,0 +1,34 @@
+#pragma once
+// The loss as optimisers see it: a function of the variables.
+#include "inverse/linear_algebra.hpp"
+#include "inverse/search_space.hpp"
+
+namespace jaxmpm {
+
+/// Least squares about a point: residuals r and their Jacobian J by the variables.
+struct Linearisation {
+  double loss = 0;
+  Variables gradient;         // Jᵀr
+  SquareMatrix normal;        // JᵀJ
+  std::size_t residuals = 0;  // that are not masked
+};
+
+/// Every evaluation throws NumericsError when the run becomes unstable.
+class LossFunction {
+ public:
+  struct Sample {
+    double loss;
+    Variables gradient;
+  };
+  virtual ~LossFunction() = default;
+  virtual const SearchSpace& space() const = 0;
+  virtual Sample gradient(const Variables& u) = 0;
+  virtual double loss(const Variables& u) = 0;
+  virtual Linearisation linearise(const Variables& u) = 0;
+  /// Later evaluations take the steps that a run with these variables chooses.
+  virtual void renew_steps(const Variables& u) = 0;
+  /// Whether the steps depend on the variables, so that renewing them changes the function.
+  virtual bool steps_vary() const = 0;
+};
+
+}  // namespace jaxmpm
