@@ -1,5 +1,7 @@
 #pragma once
 // B-splines of one axis on the unit lattice (Eq 5 and its linear and cubic siblings; de Boor). X is in cells.
+#include <type_traits>
+
 #include "core/macros.hpp"
 #include "deck/deck.hpp"
 
@@ -40,7 +42,33 @@ struct Bspline {
       g[1] = u * (Real(1.5) * u - Real(2)), g[2] = o * (Real(2) - Real(1.5) * o);
     }
   }
+  /// d²φ/dX², per cell².
+  template <class Real>
+  static JAXMPM_INLINE void curvatures(Real f, Real k[S]) {
+    if constexpr (S == 2) {
+      k[0] = Real(0), k[1] = Real(0);
+    } else if constexpr (S == 3) {
+      k[0] = Real(1), k[1] = Real(-2), k[2] = Real(1);
+    } else {
+      const Real u = f - Real(1), o = Real(1) - u;
+      k[0] = o, k[1] = Real(3) * u - Real(2), k[2] = Real(3) * o - Real(2), k[3] = u;
+    }
+  }
 };
+
+/// Calls f(integral_constant S) with the number of nodes that a basis reaches.
+template <class F>
+auto with_spline(deck::Basis basis, F&& f) {
+  switch (basis) {
+    case deck::Basis::linear:
+      return f(std::integral_constant<int, 2>{});
+    case deck::Basis::quadratic:
+      return f(std::integral_constant<int, 3>{});
+    case deck::Basis::cubic:
+      break;
+  }
+  return f(std::integral_constant<int, 4>{});
+}
 
 constexpr int spline_nodes(deck::Basis basis) { return basis == deck::Basis::linear ? 2 : (basis == deck::Basis::quadratic ? 3 : 4); }
 

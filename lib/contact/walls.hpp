@@ -24,15 +24,15 @@ struct Walls {
   const double* to;      // ends of all segments, cells
   const T* coefficient;  // one per segment
 
-  /// Friction coefficient of a face at a node: that of the first segment with X ≤ to, behind the last that of the last.
-  JAXMPM_FUNCTION T friction(int face, const std::array<int, Dim>& node) const {
+  /// Segment of a face with friction at a node: the first with X ≤ to, behind the last the last.
+  JAXMPM_FUNCTION int segment(int face, const std::array<int, Dim>& node) const {
     const Face& f = faces[std::size_t(face)];
-    if (f.count == 0) return T(0);
     int k = f.first;
     for (const int last = f.first + f.count - 1; k < last && !(node[std::size_t(f.segment_axis)] <= to[k]); ++k) {
     }
-    return coefficient[k];
+    return k;
   }
+  JAXMPM_FUNCTION T friction(int face, const std::array<int, Dim>& node) const { return coefficient[segment(face, node)]; }
   /// Whether a node is a ghost, a twin or on a face along some axis: everywhere else the update is plain division.
   JAXMPM_FUNCTION bool near_face(int axis, int node) const { return node <= 1 || node >= cells[std::size_t(axis)] - 1; }
 };
@@ -78,6 +78,7 @@ struct NodeContact {
 /// callable (Index, mass, velocity&) that applies the rigid obstacles at an inner node.
 template <class T, int Dim, class Raw, class Obstacles>
 class WallUpdate {
+ protected:
   using Node = std::array<int, Dim>;
   using V = Vector<T, Dim>;
   const Walls<T, Dim>& walls_;
@@ -111,10 +112,36 @@ class WallUpdate {
     return f.mass > cut_off_ && f.momentum[face / 2] * inward(face) < 0;
   }
 
-  /// Sums of a node with the twins along the axes of `ghosts` (face per axis or −1) folded onto it, axis `skip` left out.
-  JAXMPM_FUNCTION NodeSums<T, Dim> folded(const Node& node, const std::array<int, Dim>& twin_face, int skip) const {
-    NodeSums<T, Dim> sum = raw_(node);
-    for (int subset = 1; subset < (1 << Dim); ++subset) {
+  /// A node with regard to the faces in contact: the inner node whose image it is (itself where it is none), the signs that its velocity
+  /// takes, and per axis the face that the inner node lies on, or whose ghost is its twin (−1 for none).
+  struct Seat {
+    Node node;
+    V mirror;
+    std::array<int, Dim> on_face, twin_face;
+  };
+  JAXMPM_FUNCTION Seat seat(const Node& asked) const {
+    Seat s;
+    s.node = asked;
+    for (int c = 0; c < Dim; ++c) s.mirror[c] = T(1);
+    for (int axis = 0; axis < Dim; ++axis) {
+      const auto a = std::size_t(axis);
+      s.on_face[a] = s.twin_face[a] = -1;
+      const int face = face_of(axis, asked[a]);
+      if (face < 0 || !in_contact(face, asked)) continue;
+      if (asked[a] < 0 || asked[a] > n(axis)) {
+        s.node[a] = reflect(axis, asked[a]);
+        for (int c = 0; c < Dim; ++c) s.mirror[c] *= sign(face, c);
+      }
+      if (s.node[a] == plane(face)) s.on_face[a] = face;
+      else s.twin_face[a] = face;
+    }
+    return s;
+  }
+
+  /// Calls f(image, signs) for a node and those of its images that `folded` adds to it.
+  template <class F>
+  JAXMPM_FUNCTION void for_each_image(const Node& node, const std::array<int, Dim>& twin_face, int skip, F f) const {
+    for (int subset = 0; subset < (1 << Dim); ++subset) {
       Node image = node;
       V s;
       for (int c = 0; c < Dim; ++c) s[c] = T(1);
@@ -127,12 +154,38 @@ class WallUpdate {
         image[std::size_t(axis)] = 2 * plane(face) - node[std::size_t(axis)];
         for (int c = 0; c < Dim; ++c) s[c] *= sign(face, c);
       }
-      if (!valid) continue;
+      if (valid) f(image, s);
+    }
+  }
+  /// Sums of a node with the twins along the axes of `twin_face` (face per axis or −1) folded onto it, axis `skip` left out.
+  JAXMPM_FUNCTION NodeSums<T, Dim> folded(const Node& node, const std::array<int, Dim>& twin_face, int skip) const {
+    NodeSums<T, Dim> sum{};
+    for_each_image(node, twin_face, skip, [&](const Node& image, const V& s) {
       const NodeSums<T, Dim> other = raw_(image);
       sum.mass += other.mass;
       for (int c = 0; c < Dim; ++c) sum.momentum[c] += s[c] * other.momentum[c];
-    }
+    });
     return sum;
+  }
+  /// What the material brings to a face from beyond it, for the node on it.
+  JAXMPM_FUNCTION NodeSums<T, Dim> beyond(int face, Node node, const std::array<int, Dim>& twin_face) const {
+    node[std::size_t(face / 2)] += face % 2 == 0 ? -1 : 1;
+    return folded(node, twin_face, face / 2);
+  }
+  /// Impulse with which the material presses on a face, positive towards it: the face node's own and twice its ghost's.
+  JAXMPM_FUNCTION T pressing(int face, T mass, const V& free, const NodeSums<T, Dim>& ghost) const {
+    return -inward(face) * (mass * free[face / 2] + T(2) * ghost.momentum[face / 2]);
+  }
+  /// What remains of a velocity tangential to a face of size `speed` when friction takes `loss` (m/s) off it, to rest at most.
+  static JAXMPM_FUNCTION T remaining(T loss, T speed) { return max(T(0), T(1) - loss / speed); }
+  JAXMPM_FUNCTION bool acts(deck::ContactKind kind) const {
+    return kind == deck::ContactKind::no_slip || kind == deck::ContactKind::friction;
+  }
+  static JAXMPM_FUNCTION T tangential_square(int axis, const V& v) {
+    T square = 0;
+    for (int c = 0; c < Dim; ++c)
+      if (c != axis) square += v[c] * v[c];
+    return square;
   }
 
  public:
@@ -140,75 +193,58 @@ class WallUpdate {
       : walls_(walls), raw_(raw), obstacles_(obstacles), cut_off_(cut_off) {}
 
   /// Velocity after walls and obstacles. `contact` (may be null) receives what happened at an inner node.
-  JAXMPM_FUNCTION V velocity(Node node, NodeContact<T, Dim>* contact) const {
-    V mirror;
-    for (int c = 0; c < Dim; ++c) mirror[c] = T(1);
-    const Node asked = node;
-    std::array<int, Dim> on_face, twin_face;  // face in contact that the node lies on, or whose ghost is its twin
-    for (int axis = 0; axis < Dim; ++axis) {
-      const auto a = std::size_t(axis);
-      on_face[a] = twin_face[a] = -1;
-      const int face = face_of(axis, asked[a]);
-      if (face < 0 || !in_contact(face, asked)) continue;
-      if (asked[a] < 0 || asked[a] > n(axis)) {
-        node[a] = reflect(axis, asked[a]);
-        for (int c = 0; c < Dim; ++c) mirror[c] *= sign(face, c);
-      }
-      if (node[a] == plane(face)) on_face[a] = face;
-      else twin_face[a] = face;
-    }
-    const NodeSums<T, Dim> sum = folded(node, twin_face, -1);
+  JAXMPM_FUNCTION V velocity(const Node& asked, NodeContact<T, Dim>* contact) const {
+    const Seat at = seat(asked);
+    const NodeSums<T, Dim> sum = folded(at.node, at.twin_face, -1);
     V v;
     for (int c = 0; c < Dim; ++c) v[c] = T(0);
     if (!(sum.mass > cut_off_)) return v;
     for (int c = 0; c < Dim; ++c) v[c] = sum.momentum[c] / sum.mass;
-    apply_faces(node, on_face, twin_face, sum.mass, v, contact);
-    if (inside(node)) obstacles_(node, sum.mass, v);
-    for (int c = 0; c < Dim; ++c) v[c] *= mirror[c];
+    apply_faces(at, sum.mass, v, contact);
+    if (inside(at.node)) obstacles_(at.node, sum.mass, v);
+    for (int c = 0; c < Dim; ++c) v[c] *= at.mirror[c];
     return v;
   }
 
- private:
-  JAXMPM_FUNCTION void apply_faces(const Node& node, const std::array<int, Dim>& on_face, const std::array<int, Dim>& twin_face, T mass,
-                                   V& v, NodeContact<T, Dim>* contact) const {
+ protected:
+  JAXMPM_FUNCTION void apply_faces(const Seat& at, T mass, V& v, NodeContact<T, Dim>* contact) const {
     const V free = v;
     for (int axis = 0; axis < Dim; ++axis)  // normals first
-      if (on_face[std::size_t(axis)] >= 0) v[axis] = T(0);
-    for (int axis = 0; axis < Dim; ++axis) {
-      const int face = on_face[std::size_t(axis)];
-      if (face < 0) continue;
-      const auto kind = walls_.faces[std::size_t(face)].kind;
-      if (!contact && (kind == deck::ContactKind::separate || kind == deck::ContactKind::slip)) continue;
-      Node ghost = node;
-      ghost[std::size_t(axis)] += face % 2 == 0 ? -1 : 1;
-      const NodeSums<T, Dim> beyond = folded(ghost, twin_face, axis);
-      const T normal = -inward(face) * (mass * free[axis] + T(2) * beyond.momentum[axis]);
-      if (kind == deck::ContactKind::no_slip) {
-        for (int c = 0; c < Dim; ++c) v[c] = T(0);
-      } else if (kind == deck::ContactKind::friction) {
-        rub(axis, walls_.friction(face, node) * max(T(0), normal) / mass, mass, v, contact);
-      }
-      if (contact) report(face, axis, kind, normal, mass, free, v, beyond, *contact);
-    }
+      if (at.on_face[std::size_t(axis)] >= 0) v[axis] = T(0);
+    for (int axis = 0; axis < Dim; ++axis)
+      if (at.on_face[std::size_t(axis)] >= 0) apply_face(at.on_face[std::size_t(axis)], at, mass, free, v, contact);
   }
+  /// What a face does beyond v·n = 0 to the node on it.
+  JAXMPM_FUNCTION void apply_face(int face, const Seat& at, T mass, const V& free, V& v, NodeContact<T, Dim>* contact) const {
+    const auto kind = walls_.faces[std::size_t(face)].kind;
+    if (!contact && !acts(kind)) return;
+    const NodeSums<T, Dim> ghost = beyond(face, at.node, at.twin_face);
+    const T normal = pressing(face, mass, free, ghost);
+    if (kind == deck::ContactKind::no_slip) {
+      for (int c = 0; c < Dim; ++c) v[c] = T(0);
+    } else if (kind == deck::ContactKind::friction) {
+      rub(face / 2, walls_.friction(face, at.node) * max(T(0), normal) / mass, mass, v, contact);
+    }
+    if (contact) report(face, face / 2, kind, normal, mass, free, v, ghost, *contact);
+  }
+
+ private:
   /// Takes `loss` (m/s) off the velocity tangential to a face, to rest at most.
   JAXMPM_FUNCTION void rub(int axis, T loss, T mass, V& v, NodeContact<T, Dim>* contact) const {
-    T square = 0;
-    for (int c = 0; c < Dim; ++c)
-      if (c != axis) square += v[c] * v[c];
+    const T square = tangential_square(axis, v);
     if (!(square > 0)) return;
-    const T scale = max(T(0), T(1) - loss / sqrt(square));
+    const T scale = remaining(loss, sqrt(square));
     for (int c = 0; c < Dim; ++c)
       if (c != axis) v[c] *= scale;
     if (contact) contact->friction_work += T(0.5) * mass * square * (T(1) - scale * scale);
   }
   JAXMPM_FUNCTION void report(int face, int axis, deck::ContactKind kind, T normal, T mass, const V& free, const V& v,
-                              const NodeSums<T, Dim>& beyond, NodeContact<T, Dim>& contact) const {
+                              const NodeSums<T, Dim>& ghost, NodeContact<T, Dim>& contact) const {
     auto& impulse = contact.impulse[std::size_t(face)];
     for (int c = 0; c < Dim; ++c) {
       if (c == axis) impulse[std::size_t(c)] += inward(face) * normal;
       else if (kind == deck::ContactKind::friction) impulse[std::size_t(c)] += mass * (v[c] - free[c]);
-      else if (kind == deck::ContactKind::no_slip) impulse[std::size_t(c)] -= mass * free[c] + T(2) * beyond.momentum[c];
+      else if (kind == deck::ContactKind::no_slip) impulse[std::size_t(c)] -= mass * free[c] + T(2) * ghost.momentum[c];
     }
   }
 };

@@ -38,16 +38,14 @@ struct GatheredQuads {
   static constexpr int padded = (count + per_store - 1) / per_store * per_store;
 };
 
-/// Σ over the stencil of factor × node, for one particle: quads of sums, one pack per (quad, lane of the row); still to be added along the
-/// row.
-template <class Sch, bool only_value, class Stencil>
+/// Σ over the stencil of factor × node, for one particle: quads of sums (the value, then Dim with moments, then Dim with slopes), one pack
+/// per (quad, lane of the row); still to be added along the row.
+template <class Sch, bool moments, bool slopes, class Stencil>
 JAXMPM_INLINE void gather(const StencilRows<Sch>& rows, const Stencil& t, int l,
                           Pack<typename Sch::T, RowShape<typename Sch::T, Sch::S>::N>* sums) {
   using T = typename Sch::T;
   using Row = RowShape<T, Sch::S>;
-  using G = GatheredQuads<Sch>;
-  constexpr int S = Sch::S, N = Row::N, last = Sch::Dim - 1;
-  constexpr bool moments = Sch::g2p_moments && !only_value, slopes = Sch::g2p_slopes && !only_value;
+  constexpr int S = Sch::S, N = Row::N, last = Sch::Dim - 1, first_moment = 1, first_slope = moments ? 1 + Sch::Dim : 1;
   using R = Pack<T, N>;
   const T* z = t.last.row(l);
   static_for<Row::pieces>([&](auto piece) {
@@ -75,18 +73,14 @@ JAXMPM_INLINE void gather(const StencilRows<Sch>& rows, const Stencil& t, int l,
     }
     const auto put = [&](int quad, R value) { sums[quad] = c == 0 ? value : sums[quad] + value; };
     const R w = spread_quad<Stencil::w_quad, c, N>(z);
-    if constexpr (only_value) {
-      put(0, sum * w);
-    } else {
-      put(G::value, sum * w);
-      if constexpr (moments) {
-        for (int k = 0; k < last; ++k) put(G::moments + k, d[k] * w);
-        put(G::moments + last, sum * spread_quad<Stencil::d_quad, c, N>(z));
-      }
-      if constexpr (slopes) {
-        for (int k = 0; k < last; ++k) put(G::slopes + k, g[k] * w);
-        put(G::slopes + last, sum * spread_quad<Stencil::g_quad, c, N>(z));
-      }
+    put(0, sum * w);
+    if constexpr (moments) {
+      for (int k = 0; k < last; ++k) put(first_moment + k, d[k] * w);
+      put(first_moment + last, sum * spread_quad<Stencil::d_quad, c, N>(z));
+    }
+    if constexpr (slopes) {
+      for (int k = 0; k < last; ++k) put(first_slope + k, g[k] * w);
+      put(first_slope + last, sum * spread_quad<Stencil::g_quad, c, N>(z));
     }
   });
 }
@@ -177,8 +171,8 @@ TileReport g2p_tile(Particles<typename Sch::T, Sch::Dim>& p, std::size_t begin, 
       }
       R sums[G::padded];
       for (int i = G::count; i < G::padded; ++i) sums[i] = R(T(0));
-      gather<Sch, false>(rows[0], t, l, sums);
-      if constexpr (Sch::flip) gather<Sch, true>(rows[Sch::planes - 1], t, l, sums + G::change);
+      gather<Sch, Sch::g2p_moments, Sch::g2p_slopes>(rows[0], t, l, sums);
+      if constexpr (Sch::flip) gather<Sch, false, false>(rows[Sch::planes - 1], t, l, sums + G::change);
       for (int i = 0; i < G::padded; i += G::per_store) sum_quads<T, R::lanes>(sums + i).store(gathered.row(l) + 4 * i);
     }
     for (int l = count; l < W; ++l) std::memcpy(gathered.row(l), gathered.row(count - 1), sizeof(T) * std::size_t(4 * G::padded));

@@ -62,19 +62,22 @@ struct ParticleRows {
   }
 };
 
-/// Base nodes of W particles in their block's arena and the factors of each axis.
-template <class Sch, bool Moments, bool Slopes>
+/// Base nodes of W particles in their block's arena and the factors of each axis. `Derived`: with the derivatives of the factors by the
+/// particle's place: w' = g, d' = (w (X_i − X_p))' = g (X_i − X_p) − w and g'.
+template <class Sch, bool Moments, bool Slopes, bool Derived = false>
 struct Stencils {
   using T = typename Sch::T;
   static constexpr int Dim = Sch::Dim, S = Sch::S, W = batch<T>;
   using P = Pack<T, W>;
-  /// Quads of a row along the last axis: w, then d, then g.
-  static constexpr int w_quad = 0, d_quad = 1, g_quad = Moments ? 2 : 1;
-  static constexpr int quads = 1 + int(Moments) + int(Slopes);
+  static constexpr bool with_g = Slopes || Derived, with_dd = Moments && Derived, with_gg = Slopes && Derived;
+  /// Quads of a row along the last axis: w, then d, then g, d' and g'.
+  static constexpr int w_quad = 0, d_quad = 1, g_quad = Moments ? 2 : 1, dd_quad = g_quad + int(with_g), gg_quad = dd_quad + int(with_dd);
+  static constexpr int quads = gg_quad + int(with_gg);
 
   alignas(64) int base[W];
   alignas(64) T w[Dim - 1][S][W], d[Dim - 1][S][W], g[Dim - 1][S][W];  // axes but the last, to be broadcast
-  ParticleRows<T, 4 * quads> last;                                     // the last axis, to be spread
+  alignas(64) T dd[with_dd ? Dim - 1 : 1][S][W], gg[with_gg ? Dim - 1 : 1][S][W];
+  ParticleRows<T, 4 * quads> last;  // the last axis, to be spread
 
   JAXMPM_INLINE Stencils(const Particles<T, Dim>& p, std::size_t s, int count, const Index<Dim>& origin) {
     constexpr int A = Sch::Shape::A;
@@ -93,14 +96,17 @@ struct Stencils {
         offset[l] = T(X[l] - b);
       }
       const P f = P::load(offset);
-      P weight[S], slope[S];
+      P weight[S], slope[S], curvature[S];
       Bspline<S>::weights(f, weight);
-      if constexpr (Slopes) Bspline<S>::slopes(f, slope);
+      if constexpr (with_g) Bspline<S>::slopes(f, slope);
+      if constexpr (with_gg) Bspline<S>::curvatures(f, curvature);
       if (axis < Dim - 1) {
         for (int a = 0; a < S; ++a) {
           weight[a].store(w[axis][a]);
           if constexpr (Moments) (weight[a] * (P(T(a)) - f)).store(d[axis][a]);
-          if constexpr (Slopes) slope[a].store(g[axis][a]);
+          if constexpr (with_g) slope[a].store(g[axis][a]);
+          if constexpr (with_dd) (slope[a] * (P(T(a)) - f) - weight[a]).store(dd[axis][a]);
+          if constexpr (with_gg) curvature[a].store(gg[axis][a]);
         }
       } else {
         P row[decltype(last)::stride];
@@ -108,7 +114,9 @@ struct Stencils {
         for (int a = 0; a < S; ++a) {
           row[4 * w_quad + a] = weight[a];
           if constexpr (Moments) row[4 * d_quad + a] = weight[a] * (P(T(a)) - f);
-          if constexpr (Slopes) row[4 * g_quad + a] = slope[a];
+          if constexpr (with_g) row[4 * g_quad + a] = slope[a];
+          if constexpr (with_dd) row[4 * dd_quad + a] = slope[a] * (P(T(a)) - f) - weight[a];
+          if constexpr (with_gg) row[4 * gg_quad + a] = curvature[a];
         }
         last.fill(row);
       }

@@ -31,28 +31,34 @@ StepKernels<typename Sch::T, Sch::Dim> kernels_of() {
   return k;
 }
 
-template <class T, int Dim, int S, bool mls>
-StepKernels<T, Dim> kernels_of(deck::Transfer transfer) {
+/// Calls f(Scheme<…>{}) with the scheme of a method: the one place where run-time choices become compile-time facts.
+template <class T, int Dim, int S, bool mls, class F>
+auto with_scheme(deck::Transfer transfer, F&& f) {
   using deck::Transfer;
   switch (transfer) {
     case Transfer::pic:
-      return kernels_of<Scheme<T, Dim, S, Transfer::pic, mls>>();
+      return f(Scheme<T, Dim, S, Transfer::pic, mls>{});
     case Transfer::flip:
-      return kernels_of<Scheme<T, Dim, S, Transfer::flip, mls>>();
+      return f(Scheme<T, Dim, S, Transfer::flip, mls>{});
     case Transfer::apic:  // with linear splines APIC is TPIC
-      if constexpr (S > 2) return kernels_of<Scheme<T, Dim, S, Transfer::apic, mls>>();
+      if constexpr (S > 2) return f(Scheme<T, Dim, S, Transfer::apic, mls>{});
       [[fallthrough]];
     case Transfer::tpic:
       break;
   }
-  return kernels_of<Scheme<T, Dim, S, Transfer::tpic, mls>>();
+  return f(Scheme<T, Dim, S, Transfer::tpic, mls>{});
+}
+
+template <class T, int Dim, int S, class F>
+auto with_scheme(deck::Transfer transfer, deck::GradientForm gradient, F&& f) {
+  if constexpr (S > 2)
+    if (gradient == deck::GradientForm::mls) return with_scheme<T, Dim, S, true>(transfer, f);
+  return with_scheme<T, Dim, S, false>(transfer, f);
 }
 
 template <class T, int Dim, int S>
 StepKernels<T, Dim> step_kernels(deck::Transfer transfer, deck::GradientForm gradient) {
-  if constexpr (S > 2)
-    if (gradient == deck::GradientForm::mls) return kernels_of<T, Dim, S, true>(transfer);
-  return kernels_of<T, Dim, S, false>(transfer);
+  return with_scheme<T, Dim, S>(transfer, gradient, [](auto scheme) { return kernels_of<decltype(scheme)>(); });
 }
 
 }  // namespace jaxmpm

@@ -1,5 +1,7 @@
 #include "reference/grid_update.hpp"
 
+#include "contact/obstacles.hpp"
+
 namespace jaxmpm {
 namespace {
 
@@ -134,7 +136,7 @@ void ReferenceGridUpdate<Scalar>::apply_obstacles(const Node& inner, const Scala
   const Point at{double(inner[0]), double(inner[1]), double(inner[2])};
   for (std::size_t o = 0; o < model_.obstacles.size(); ++o) {
     const RigidObstacle& obstacle = model_.obstacles[o];
-    const SignedDistance surface = obstacle.signed_distance(at);
+    const SignedDistance surface = surface_at_node(obstacle, at, model_.cells, model_.dim);
     if (surface.distance > 1e-9) continue;
     Scalar approach(0);
     for (int c = 0; c < model_.dim; ++c) approach += v[c] * Scalar(surface.normal[c]);

@@ -19,19 +19,6 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_;
 };
 
-template <class T, int Dim>
-StepKernels<T, Dim> choose_kernels(const deck::Method& method) {
-  switch (method.basis) {
-    case deck::Basis::linear:
-      return step_kernels<T, Dim, 2>(method.transfer, method.gradient);
-    case deck::Basis::quadratic:
-      return step_kernels<T, Dim, 3>(method.transfer, method.gradient);
-    case deck::Basis::cubic:
-      break;
-  }
-  return step_kernels<T, Dim, 4>(method.transfer, method.gradient);
-}
-
 }  // namespace
 
 /// One explicit step, stress updated last (Du & He 2025, Eqs 9–18).
@@ -48,7 +35,8 @@ void ExplicitStep<T, Dim>::step(double dt) {
 template <class T, int Dim>
 ExplicitStep<T, Dim>::ExplicitStep(const Model& model)
     : model_(model),
-      kernels_(choose_kernels<T, Dim>(model.method)),
+      kernels_(with_spline(model.method.basis,
+                           [&](auto nodes) { return step_kernels<T, Dim, nodes>(model.method.transfer, model.method.gradient); })),
       bodies_(model.bodies.size()),
       extent_(kernels_.block_extent(model.cells)),
       grid_(model_, kernels_) {
@@ -64,12 +52,15 @@ ExplicitStep<T, Dim>::ExplicitStep(const Model& model)
 }
 
 template <class T, int Dim>
-void ExplicitStep<T, Dim>::sort() {
+void ExplicitStep<T, Dim>::sort(std::vector<std::vector<std::uint32_t>>* orders) {
   const Stopwatch time(seconds_.sort);
   blocks_.tiles.clear(), tile_key_.clear();
-  for (std::size_t b = 0; b < bodies_.size(); ++b) kernels_.sort(bodies_[b], std::uint32_t(b), extent_, scratch_, blocks_.tiles, tile_key_);
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    kernels_.sort(bodies_[b], std::uint32_t(b), extent_, scratch_, blocks_.tiles, tile_key_);
+    if (orders) orders->push_back(scratch_.order);
+  }
   rebuild_blocks();
-  numbers_.drift = 0;
+  numbers_.drift = 0, ++sorts_;
 }
 
 template <class T, int Dim>

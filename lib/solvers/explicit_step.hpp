@@ -7,7 +7,7 @@
 namespace jaxmpm {
 
 template <class T, int Dim>
-class ExplicitStep final : public Solver {
+class ExplicitStep : public Solver {
  public:
   explicit ExplicitStep(const Model& model);
 
@@ -25,13 +25,14 @@ class ExplicitStep final : public Solver {
   PhaseSeconds phase_seconds() const override { return seconds_; }
   std::size_t active_blocks() const override { return blocks_.count(); }
 
- private:
+ protected:
   /// Particles may move this far, in cells, before they are sorted again: far enough to be rare, near enough that most still share a
   /// stencil with their neighbours.
   static constexpr double sort_after = 0.3;
 
   bool sort_is_due() const { return numbers_.drift > sort_after; }
-  void sort();
+  /// `orders` (may be null) receives per body where each particle was before.
+  void sort(std::vector<std::vector<std::uint32_t>>* orders = nullptr);
   void rebuild_blocks();
   void p2g();
   void update_grid(double dt);
@@ -56,6 +57,7 @@ class ExplicitStep final : public Solver {
   std::vector<TileReport> reports_;
 
   StepNumbers numbers_;
+  std::uint64_t sorts_ = 0;  // by this object
   bool record_forces_ = false;
   PhaseSeconds seconds_;
 };

@@ -1,7 +1,8 @@
 #include "solvers/grid_update.hpp"
 
+#include <cstring>
+
 #include "core/parallel.hpp"
-#include "kernels/wall_node.hpp"
 
 namespace jaxmpm {
 namespace {
@@ -29,9 +30,26 @@ void GridUpdate<T, Dim>::rebuild(const Blocks<Dim>& blocks) {
 }
 
 template <class T, int Dim>
-void GridUpdate<T, Dim>::update(const Blocks<Dim>& blocks, const T* arenas, double dt) {
+GridConstants<T, Dim> GridUpdate<T, Dim>::constants(double dt) const {
   GridConstants<T, Dim> constants{{}, mass_cut_off_};
   for (int c = 0; c < Dim; ++c) constants.gravity_step[c] = T(dt * model_.gravity[std::size_t(c)]);
+  return constants;
+}
+
+template <class T, int Dim>
+WallSums<T, Dim> GridUpdate<T, Dim>::wall_sums(const Blocks<Dim>& blocks, std::size_t b, const GridConstants<T, Dim>& constants) const {
+  return {blocks.neighbour.data() + b * around,
+          contact_blocks_.wall_slot().data(),
+          raw_.data(),
+          kernels_.planes,
+          first_node<Dim>(blocks.index[b]),
+          constants.gravity_step};
+}
+
+template <class T, int Dim>
+void GridUpdate<T, Dim>::update(const Blocks<Dim>& blocks, const T* arenas, double dt) {
+  const GridConstants<T, Dim> constants = this->constants(dt);
+  if (keep_sums_) sums_.resize(blocks.count() * kernels_.own_size);
   const std::vector<std::uint32_t>& wall_blocks = contact_blocks_.wall_blocks();
   parallel_for_host("jaxmpm::grid", blocks.count(), [&](std::size_t b) { update_block(blocks, b, arenas, constants); });
   parallel_for_host("jaxmpm::walls", wall_blocks.size(), [&](std::size_t w) { update_wall_block(blocks, wall_blocks[w], constants); });
@@ -44,6 +62,7 @@ void GridUpdate<T, Dim>::update_block(const Blocks<Dim>& blocks, std::size_t b, 
   if (wall_slot >= 0) return kernels_.sum(blocks, b, arenas, raw_.data() + std::size_t(wall_slot) * kernels_.own_size);
   T* own = grid_.data() + b * kernels_.own_size;
   kernels_.sum(blocks, b, arenas, own);
+  if (keep_sums_) std::memcpy(sums_.data() + b * kernels_.own_size, own, sizeof(T) * kernels_.own_size);
   kernels_.update_nodes(own, constants);
   if (contact_blocks_.obstacles(b)) apply_obstacles(b);
 }
@@ -70,7 +89,7 @@ template <class T, int Dim>
 void GridUpdate<T, Dim>::update_wall_block(const Blocks<Dim>& blocks, std::size_t b, const GridConstants<T, Dim>& constants) {
   const int* neighbours = blocks.neighbour.data() + b * around;
   const Node first = first_node<Dim>(blocks.index[b]);
-  const WallSums<T, Dim> raw{neighbours, contact_blocks_.wall_slot().data(), raw_.data(), kernels_.planes, first, constants.gravity_step};
+  const WallSums<T, Dim> raw = wall_sums(blocks, b, constants);
   bool inside = false;
   const auto obstacles = [&](const Node& node, T mass, Vector<T, Dim>& v) {
     const Place<Dim> at = locate<Dim>(neighbours, first, node);

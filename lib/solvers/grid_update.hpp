@@ -1,6 +1,7 @@
 #pragma once
 // The grid update of a step on the host (Eqs 13–15): sums of the arenas, and what walls and obstacles do to the nodes of a block.
 #include "kernels/step_kernels.hpp"
+#include "kernels/wall_node.hpp"
 #include "solvers/contact_blocks.hpp"
 #include "solvers/solver.hpp"
 
@@ -25,6 +26,18 @@ class GridUpdate {
   const T* grid() const { return grid_.data(); }
 
   void record_contact(bool on) { recording_ = on; }
+  /// From now on sums() holds what the last update found at the nodes: the adjoint needs it.
+  void keep_sums() { keep_sums_ = true; }
+  /// Sums {m, p} (and FLIP's {–, impulse}) of a block's own nodes before the update.
+  const T* sums(std::size_t b) const {
+    const int slot = contact_blocks_.wall_slot()[b];
+    return slot >= 0 ? raw_.data() + std::size_t(slot) * kernels_.own_size : sums_.data() + b * kernels_.own_size;
+  }
+  /// The same, of a block at walls and its neighbours, with Δt g.
+  WallSums<T, Dim> wall_sums(const Blocks<Dim>& blocks, std::size_t b, const GridConstants<T, Dim>& constants) const;
+  GridConstants<T, Dim> constants(double dt) const;
+  const ContactBlocks<T, Dim>& contact_blocks() const { return contact_blocks_; }
+  const Walls<T, Dim>& walls() const { return walls_; }
   /// Totals of the last update, added up in the order of blocks.
   BlockContact contact() const;
   std::size_t bytes() const { return (grid_.capacity() + raw_.capacity()) * sizeof(T); }
@@ -43,7 +56,8 @@ class GridUpdate {
   ContactBlocks<T, Dim> contact_blocks_;
   Walls<T, Dim> walls_;
   T mass_cut_off_;
-  Array<T> grid_, raw_;  // [block][own], [wall block][own]
+  Array<T> grid_, raw_, sums_;  // [block][own], [wall block][own], [block][own] where kept
+  bool keep_sums_ = false;
   bool recording_ = false;
   std::vector<BlockContact> contact_;  // [block]
 };

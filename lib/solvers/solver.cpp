@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "solvers/explicit_step.hpp"
+#include "solvers/reversible_step.hpp"
 #if defined(KOKKOS_ENABLE_CUDA)
 #include "solvers/cuda_solver.hpp"
 #endif
@@ -40,6 +41,14 @@ std::unique_ptr<Solver> make_solver(const Model& model, Backend backend) {
   if (backend == Backend::cuda) return make_cuda_solver(model);
 #endif
   return model.method.precision == deck::Precision::f32 ? make_host_solver<float>(model) : make_host_solver<double>(model);
+}
+
+std::unique_ptr<ReversibleSolver> make_reversible_solver(const Model& model) {
+  check_extent(model);
+  if (model.method.precision != deck::Precision::f64)
+    throw DeckError("/method/precision", "gradients are computed in double precision; set it to \"f64\"");
+  if (model.dim == 2) return std::make_unique<ReversibleStep<double, 2>>(model);
+  return std::make_unique<ReversibleStep<double, 3>>(model);
 }
 
 }  // namespace jaxmpm

@@ -1,0 +1,136 @@
+#pragma once
+// Adjoint of the transfer from grid to particles and of the stress update that follows: the reverse of a gather is a scatter.
+#include "kernels/adjoint/p2g.hpp"
+
+namespace jaxmpm {
+
+/// What a tile reports of the adjoint of a step.
+struct AdjointReport {
+  MaterialReport material;
+  double flip_fraction = 0;
+};
+
+/// Adjoint of update_particles for W particles: derivatives by their end values in `bar` become those by their start values as far as they
+/// do not pass the grid, and those by the gathered quads are written to `quads`, in the order of GatheredQuads.
+template <class Sch>
+JAXMPM_INLINE void update_particles_adjoint(const Particles<typename Sch::T, Sch::Dim>& p, std::size_t s, int count,
+                                            const Pack<typename Sch::T, batch<typename Sch::T>>* gathered,
+                                            const MaterialAdjoint<typename Sch::T, Sch::Dim>& material,
+                                            const StepConstants<typename Sch::T>& step, Particles<typename Sch::T, Sch::Dim>& bar,
+                                            Pack<typename Sch::T, batch<typename Sch::T>>* quads, AdjointReport& report) {
+  using T = typename Sch::T;
+  using G = GatheredQuads<Sch>;
+  constexpr int W = batch<T>, Dim = Sch::Dim;
+  using P = Pack<T, W>;
+  const auto component = [&](int quad, int c) { return gathered[4 * quad + 1 + c]; };
+  const auto by = [&](int quad, int c) -> P& { return quads[4 * quad + 1 + c]; };
+  const T slope_scale = T(1) / step.cell_size;
+  const T moment_scale = Sch::S > 2 ? T(1 / Bspline<Sch::S>::second_moment) / step.cell_size : T(0);
+
+  for (int c = 0; c < Dim; ++c) {  // x ← x + Δt v, and the velocity
+    alignas(64) T place[W];
+    const double* by_x = bar.position[std::size_t(c)].data() + s;
+    for (int l = 0; l < W; ++l) place[l] = T(by_x[l < count ? l : count - 1]);
+    T* by_v = bar.velocity[std::size_t(c)].data() + s;
+    const P end = load(by_v, count);
+    by(G::value, c) = P(step.dt / step.cell_size) * P::load(place);
+    if constexpr (Sch::flip) {
+      const P blend(step.flip_fraction), pic = component(G::value, c);
+      by(G::value, c) += (P(T(1)) - blend) * end;
+      by(G::change, c) = blend * end;
+      const P share = end * (load(p.velocity[std::size_t(c)].data() + s, count) + component(G::change, c) - pic);
+      for (int l = 0; l < count; ++l) report.flip_fraction += double(share[l]);
+      store(by_v, blend * end, count);
+    } else {
+      by(G::value, c) += end;
+      store(by_v, P(T(0)), count);
+    }
+  }
+  if constexpr (Sch::affine) {
+    constexpr int from = Sch::affine_by_moments ? G::moments : G::slopes;
+    const P scale(Sch::affine_by_moments ? moment_scale : slope_scale);
+    for (int c = 0; c < Dim; ++c)
+      for (int k = 0; k < Dim; ++k) {
+        T* by_affine = bar.affine[std::size_t(c * Dim + k)].data() + s;
+        by(from + k, c) += scale * load(by_affine, count);
+        store(by_affine, P(T(0)), count);
+      }
+  }
+  constexpr int from = Sch::mls ? G::moments : G::slopes;
+  const P rate(step.dt * (Sch::mls ? moment_scale : slope_scale));
+  alignas(64) T H[Dim * Dim][W], by_H[Dim * Dim][W];
+  for (int c = 0; c < Dim; ++c)
+    for (int k = 0; k < Dim; ++k) (rate * component(from + k, c)).store(H[c * Dim + k]);
+  material.update(p, s, count, H, step.dt, bar, by_H, report.material);
+  for (int c = 0; c < Dim; ++c)
+    for (int k = 0; k < Dim; ++k) by(from + k, c) += rate * P::load(by_H[c * Dim + k]);
+}
+
+/// Adjoint of g2p_tile. `velocities`: the arena that the tile gathered from; `arena` is cleared and receives the derivatives by it.
+template <class Sch>
+void g2p_adjoint_tile(const Particles<typename Sch::T, Sch::Dim>& p, std::size_t begin, std::size_t end,
+                      const MaterialAdjoint<typename Sch::T, Sch::Dim>& material, const StepConstants<typename Sch::T>& step,
+                      const Index<Sch::Dim>& origin, const typename Sch::T* velocities, typename Sch::T* arena,
+                      Particles<typename Sch::T, Sch::Dim>& bar, AdjointReport& report) {
+  using T = typename Sch::T;
+  using G = GatheredQuads<Sch>;
+  using R = typename StencilRows<Sch>::R;
+  constexpr int W = batch<T>;
+  constexpr int moments = Sch::g2p_moments ? G::moments : -1, slopes = Sch::g2p_slopes ? G::slopes : -1;
+  std::memset(arena, 0, sizeof(T) * Sch::arena_size);
+  StencilRows<Sch> rows[Sch::planes], by_rows[Sch::planes];
+  for (auto& r : rows) r.clear();
+  for (auto& r : by_rows) r.clear();
+  int current = -1, loaded = -1;  // base nodes of by_rows and of rows
+  const auto flush = [&] {
+    for (int plane = 0; plane < Sch::planes; ++plane) by_rows[plane].add_to(arena + plane * Sch::arena_plane + current * 4);
+  };
+  for (std::size_t s = begin; s < end; s += W) {
+    const int count = int(end - s < std::size_t(W) ? end - s : std::size_t(W));
+    const Stencils<Sch, Sch::g2p_moments, Sch::g2p_slopes, true> t(p, s, count, origin);
+    ParticleRows<T, 4 * G::padded> gathered;
+    for (int l = 0; l < count; ++l) {
+      if (t.base[l] != loaded) {
+        loaded = t.base[l];
+        for (int plane = 0; plane < Sch::planes; ++plane) rows[plane].load(velocities + plane * Sch::arena_plane + loaded * 4);
+      }
+      R sums[G::padded];
+      for (int i = G::count; i < G::padded; ++i) sums[i] = R(T(0));
+      gather<Sch, Sch::g2p_moments, Sch::g2p_slopes>(rows[0], t, l, sums);
+      if constexpr (Sch::flip) gather<Sch, false, false>(rows[Sch::planes - 1], t, l, sums + G::change);
+      for (int i = 0; i < G::padded; i += G::per_store) sum_quads<T, R::lanes>(sums + i).store(gathered.row(l) + 4 * i);
+    }
+    for (int l = count; l < W; ++l) std::memcpy(gathered.row(l), gathered.row(count - 1), sizeof(T) * std::size_t(4 * G::padded));
+    Pack<T, W> packs[decltype(gathered)::stride], quads[decltype(gathered)::stride];
+    gathered.read(packs);
+    for (auto& q : quads) q = Pack<T, W>(T(0));
+    update_particles_adjoint<Sch>(p, s, count, packs, material, step, bar, quads, report);
+    gathered.fill(quads);
+
+    PlaceSums<Sch> by_place;
+    for (int l = 0; l < count; ++l) {
+      if (t.base[l] != current) {
+        if (current >= 0) flush();
+        for (auto& r : by_rows) r.clear();
+        current = t.base[l];
+      }
+      if (t.base[l] != loaded) {
+        loaded = t.base[l];
+        for (int plane = 0; plane < Sch::planes; ++plane) rows[plane].load(velocities + plane * Sch::arena_plane + loaded * 4);
+      }
+      R place[PlaceSums<Sch>::padded];
+      for (R& x : place) x = R(T(0));
+      scatter<Sch, G::value, moments, slopes>(by_rows[0], t, l, gathered.row(l));
+      contract<Sch, G::value, moments, slopes>(rows[0], t, l, gathered.row(l), place);
+      if constexpr (Sch::flip) {
+        scatter<Sch, G::change, -1, -1>(by_rows[1], t, l, gathered.row(l));
+        contract<Sch, G::change, -1, -1>(rows[1], t, l, gathered.row(l), place);
+      }
+      by_place.put(l, place);
+    }
+    by_place.add_to(bar, s, count);
+  }
+  if (current >= 0) flush();
+}
+
+}  // namespace jaxmpm

@@ -1,0 +1,138 @@
+#pragma once
+// The adjoint of any law (lib/materials) by a tape of its own update (core/tape.hpp).
+#include "core/tape.hpp"
+#include "kernels/adjoint/material_adjoint.hpp"
+#include "kernels/stencil.hpp"
+#include "materials/registry.hpp"
+
+namespace jaxmpm {
+
+template <class T, int Dim, template <class> class Law>
+class LawAdjoint final : public MaterialAdjoint<T, Dim> {
+  static constexpr int W = batch<T>, history = Law<T>::template history_size<Dim>(), slots = history > 0 ? history : 1;
+  using P = Pack<T, W>;
+  using Real = Taped<P>;
+  static constexpr int constants = int(std::tuple_size_v<decltype(Law<T>::constants(std::declval<Law<T>&>()))>);
+  static_assert(constants <= MaterialReport::most_constants);
+  Law<T> law_;
+
+  /// The particles' compression and history as inputs of the tape, with their derivatives by the end of the step.
+  struct Inputs {
+    Real e, h[slots];
+    Inputs(const Particles<T, Dim>& p, std::size_t s, int count) : e(Real::input(load(p.compression.data() + s, count))) {
+      for (int k = 0; k < history; ++k) h[k] = Real::input(load(p.history[std::size_t(k)].data() + s, count));
+    }
+  };
+  /// The law with its constants as inputs of the tape.
+  Law<Real> taped_law() const {
+    Law<Real> law;
+    const auto from = Law<T>::constants(law_);
+    const auto to = Law<Real>::constants(law);
+    for (std::size_t k = 0; k < from.size(); ++k) *to[k] = Real::input(P(*from[k]));
+    return law;
+  }
+  static void add(Law<Real>& law, int count, MaterialReport& report) {
+    const auto all = Law<Real>::constants(law);
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      const P by = Real::tape().derivative(all[k]->node);
+      for (int l = 0; l < count; ++l) report.constants[k] += double(by[l]);
+    }
+  }
+  /// Derivatives by `count` particles, zero in the lanes behind them.
+  static P seed(const Array<T>& field, std::size_t s, int count) {
+    alignas(64) T lane[W] = {};
+    for (int l = 0; l < count; ++l) lane[l] = field[s + std::size_t(l)];
+    return P::load(lane);
+  }
+
+ public:
+  explicit LawAdjoint(const Law<T>& law) : law_(law) {}
+
+  void update(const Particles<T, Dim>& p, std::size_t s, int count, const T H[][W], T dt, Particles<T, Dim>& bar, T by_H[][W],
+              MaterialReport& report) const override {
+    Tape<P>& tape = Real::tape();
+    tape.clear();
+    const Inputs start(p, s, count);
+    Law<Real> law = taped_law();
+    Matrix<Real, Dim> increment;
+    for (int k = 0; k < Dim * Dim; ++k) increment.a[k] = Real::input(P::load(H[k]));
+    Real e = start.e, h[slots];
+    for (int k = 0; k < history; ++k) h[k] = start.h[k];
+    law.template update<Real, Dim>(increment, Real(dt), e, h);
+    tape.seed(e.node, seed(bar.compression, s, count));
+    for (int k = 0; k < history; ++k) tape.seed(h[k].node, seed(bar.history[std::size_t(k)], s, count));
+    tape.sweep();
+    store(bar.compression.data() + s, tape.derivative(start.e.node), count);
+    for (int k = 0; k < history; ++k) store(bar.history[std::size_t(k)].data() + s, tape.derivative(start.h[k].node), count);
+    for (int k = 0; k < Dim * Dim; ++k) tape.derivative(increment.a[k].node).store(by_H[k]);
+    add(law, count, report);
+    for (int l = 0; l < count; ++l) report.at_kinks += tape.ties().m[l] != 0;
+  }
+
+  void stress(const Particles<T, Dim>& p, std::size_t s, int count, const T by_sigma[][W], Particles<T, Dim>& bar,
+              MaterialReport& report) const override {
+    Tape<P>& tape = Real::tape();
+    tape.clear();
+    const Inputs start(p, s, count);
+    Law<Real> law = taped_law();
+    const Symmetric<Real, Dim> sigma = law.template stress<Real, Dim>(start.e, start.h);
+    for (int k = 0; k < sigma.size; ++k) {
+      alignas(64) T lane[W];
+      for (int l = 0; l < W; ++l) lane[l] = l < count ? by_sigma[k][l] : T(0);
+      tape.seed(sigma[k].node, P::load(lane));
+    }
+    tape.sweep();
+    const auto add_to = [&](Array<T>& field, int node) {
+      store(field.data() + s, load(field.data() + s, count) + tape.derivative(node), count);
+    };
+    add_to(bar.compression, start.e.node);
+    for (int k = 0; k < history; ++k) add_to(bar.history[std::size_t(k)], start.h[k].node);
+    add(law, count, report);
+  }
+
+  void start(const Particles<T, Dim>& p, const Particles<T, Dim>& bar, double* by_compression, double* by_stress,
+             MaterialReport& report) const override {
+    for (std::size_t s = 0; s < p.count(); s += W) {
+      const int count = int(std::min<std::size_t>(W, p.count() - s));
+      start_batch(p, s, count, bar, by_compression + s, by_stress + 6 * s, report);
+    }
+  }
+
+ private:
+  void start_batch(const Particles<T, Dim>& p, std::size_t s, int count, const Particles<T, Dim>& bar, double* by_compression,
+                   double* by_stress, MaterialReport& report) const {
+    P h[slots];
+    for (int k = 0; k < history; ++k) h[k] = load(p.history[std::size_t(k)].data() + s, count);
+    const P compression = load(p.compression.data() + s, count);
+    const Symmetric<P, Dim> stress = law_.template stress<P, Dim>(compression, h);  // what the state was started from
+    Tape<P>& tape = Real::tape();
+    tape.clear();
+    Law<Real> law = taped_law();
+    Symmetric<Real, Dim> sigma;
+    for (int k = 0; k < sigma.size; ++k) sigma[k] = Real::input(stress[k]);
+    const Real e = Real::input(compression);
+    Real started[slots];
+    law.template start<Real, Dim>(sigma, e, started);
+    for (int k = 0; k < history; ++k) tape.seed(started[k].node, seed(bar.history[std::size_t(k)], s, count));
+    tape.sweep();
+    for (int l = 0; l < count; ++l) {
+      by_compression[l] = double(bar.compression[s + std::size_t(l)]) + double(tape.derivative(e.node)[l]);
+      for (int k = 0; k < sigma.size; ++k) by_stress[6 * l + k] = double(tape.derivative(sigma[k].node)[l]);
+    }
+    add(law, count, report);
+  }
+};
+
+namespace material_detail {
+template <class T, int Dim, template <class> class Law>
+std::unique_ptr<MaterialAdjoint<T, Dim>> make_adjoint(const Law<T>& law) {
+  return std::make_unique<LawAdjoint<T, Dim, Law>>(law);
+}
+}  // namespace material_detail
+
+template <class T, int Dim>
+std::unique_ptr<MaterialAdjoint<T, Dim>> make_material_adjoint(const deck::Material& material) {
+  return with_law<T>(material, [](const auto& law) { return material_detail::make_adjoint<T, Dim>(law); });
+}
+
+}  // namespace jaxmpm

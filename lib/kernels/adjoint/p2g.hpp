@@ -1,0 +1,140 @@
+#pragma once
+// Adjoint of the transfer from particles to grid: the reverse of a scatter is a gather, of the nodes' derivatives this time.
+#include "kernels/adjoint/contract.hpp"
+#include "kernels/adjoint/material_adjoint.hpp"
+
+namespace jaxmpm {
+
+/// Sums by place of W particles (quads of one pack an axis): four lanes each, still to be added.
+template <class Sch>
+struct PlaceSums {
+  using T = typename Sch::T;
+  static constexpr int per_store = GatheredQuads<Sch>::per_store;
+  static constexpr int padded = (Sch::Dim + per_store - 1) / per_store * per_store;
+  ParticleRows<T, 4 * padded> rows;
+
+  JAXMPM_INLINE PlaceSums() { std::memset(rows.value, 0, sizeof rows.value); }
+  /// Takes the packs of one particle.
+  JAXMPM_INLINE void put(int lane, const Pack<T, RowShape<T, Sch::S>::N>* sums) {
+    for (int i = 0; i < padded; i += per_store) sum_quads<T, RowShape<T, Sch::S>::N>(sums + i).store(rows.row(lane) + 4 * i);
+  }
+  /// Adds them to the derivatives by position.
+  JAXMPM_INLINE void add_to(Particles<T, Sch::Dim>& bar, std::size_t s, int count) const {
+    Pack<T, batch<T>> packs[decltype(rows)::stride];
+    rows.read(packs);
+    for (int j = 0; j < Sch::Dim; ++j) {
+      alignas(64) T sum[batch<T>];
+      ((packs[4 * j] + packs[4 * j + 1]) + (packs[4 * j + 2] + packs[4 * j + 3])).store(sum);
+      double* by_x = bar.position[std::size_t(j)].data() + s;
+      for (int l = 0; l < count; ++l) by_x[l] += double(sum[l]);
+    }
+  }
+};
+
+/// Adjoint of Coefficients: what the gathered derivatives by a particle's quads bring to its fields. Gathered: the value with w, then Dim
+/// with d and Dim with g as far as the scheme has them.
+template <class Sch>
+JAXMPM_INLINE void coefficients_adjoint(const Particles<typename Sch::T, Sch::Dim>& p, std::size_t s, int count,
+                                        const Pack<typename Sch::T, batch<typename Sch::T>>* gathered, int first_force,
+                                        const MaterialKernel<typename Sch::T, Sch::Dim>& material,
+                                        const MaterialAdjoint<typename Sch::T, Sch::Dim>& material_adjoint,
+                                        const StepConstants<typename Sch::T>& step, Particles<typename Sch::T, Sch::Dim>& bar,
+                                        MaterialReport& report) {
+  using T = typename Sch::T;
+  constexpr int W = batch<T>, Dim = Sch::Dim;
+  using P = Pack<T, W>;
+  const auto quad = [&](int q, int c) { return gathered[4 * q + 1 + c]; };
+  const auto add = [&](Array<T>& field, P value) { store(field.data() + s, load(field.data() + s, count) + value, count); };
+  const P m = load(p.mass.data() + s, count);
+  P by_mass = gathered[0];
+  for (int c = 0; c < Dim; ++c) {
+    by_mass += quad(0, c) * load(p.velocity[std::size_t(c)].data() + s, count);
+    add(bar.velocity[std::size_t(c)], m * quad(0, c));
+  }
+  if constexpr (Sch::affine) {
+    constexpr int first_moment = 1;
+    const P size(step.cell_size);
+    for (int c = 0; c < Dim; ++c)
+      for (int k = 0; k < Dim; ++k) {
+        const P by = size * quad(first_moment + k, c);
+        by_mass += by * load(p.affine[std::size_t(c * Dim + k)].data() + s, count);
+        add(bar.affine[std::size_t(c * Dim + k)], m * by);
+      }
+  }
+  alignas(64) T sigma[Symmetric<T, Dim>::size][W], by_sigma[Symmetric<T, Dim>::size][W];
+  material.stress(p, s, count, sigma);
+  const P e = load(p.compression.data() + s, count), growth = P(T(1)) / (P(T(1)) + e);
+  const T per_cell = Sch::mls ? T(1 / Bspline<Sch::S>::second_moment) / step.cell_size : T(1) / step.cell_size;
+  const P per_mass = P(-step.dt * per_cell / material.reference_density()) * growth, impulse = m * per_mass;
+  P by_impulse(T(0)), by_stress[Symmetric<T, Dim>::size];
+  for (P& b : by_stress) b = P(T(0));
+  for (int c = 0; c < Dim; ++c)
+    for (int k = 0; k < Dim; ++k) {
+      const int at = Symmetric<T, Dim>::index(c, k);
+      by_impulse += quad(first_force + k, c) * P::load(sigma[at]);
+      by_stress[at] += impulse * quad(first_force + k, c);
+    }
+  by_mass += by_impulse * per_mass;
+  add(bar.mass, by_mass);
+  const P by_volume = by_impulse * impulse;
+  add(bar.compression, -by_volume * growth);
+  for (int l = 0; l < count; ++l) report.constants[0] -= double(by_volume[l]) / double(material.reference_density());
+  for (int k = 0; k < Symmetric<T, Dim>::size; ++k) by_stress[k].store(by_sigma[k]);
+  material_adjoint.stress(p, s, count, by_sigma, bar, report);
+}
+
+/// Adjoint of p2g_tile: adds to `bar` what the derivatives by the nodes' sums, in `arena` ({m̄, p̄}, and FLIP's {–, impulse}), bring.
+template <class Sch>
+void p2g_adjoint_tile(const Particles<typename Sch::T, Sch::Dim>& p, std::size_t begin, std::size_t end,
+                      const MaterialKernel<typename Sch::T, Sch::Dim>& material,
+                      const MaterialAdjoint<typename Sch::T, Sch::Dim>& material_adjoint, const StepConstants<typename Sch::T>& step,
+                      const Index<Sch::Dim>& origin, const typename Sch::T* arena, Particles<typename Sch::T, Sch::Dim>& bar,
+                      MaterialReport& report) {
+  using T = typename Sch::T;
+  using Q = Coefficients<Sch>;
+  using R = typename StencilRows<Sch>::R;
+  constexpr int W = batch<T>, Dim = Sch::Dim, per_store = GatheredQuads<Sch>::per_store;
+  constexpr bool with_d = Sch::p2g_moments, with_g = Sch::p2g_slopes;
+  constexpr int moments = Sch::mls ? Q::force : (Sch::affine ? Q::affine : -1), slopes = Sch::mls ? -1 : Q::force;
+  // Gathered quads: of FLIP those with the momentum first, then those with the impulse.
+  constexpr int others = Sch::flip ? 1 : 0, kinds = 1 + Dim * (int(with_d) + int(with_g));
+  constexpr int count_of_quads = others + kinds, padded = (count_of_quads + per_store - 1) / per_store * per_store;
+  constexpr int first_force = others + 1 + (with_d && with_g ? Dim : 0);
+  StencilRows<Sch> rows[Sch::planes];
+  for (auto& r : rows) r.clear();
+  int current = -1;
+  for (std::size_t s = begin; s < end; s += W) {
+    const int count = int(end - s < std::size_t(W) ? end - s : std::size_t(W));
+    const Stencils<Sch, with_d, with_g, true> t(p, s, count, origin);
+    const Q q(p, s, count, material, step);
+    ParticleRows<T, 4 * padded> gathered;
+    std::memset(gathered.value, 0, sizeof gathered.value);
+    PlaceSums<Sch> by_place;
+    for (int l = 0; l < count; ++l) {
+      if (t.base[l] != current) {
+        current = t.base[l];
+        for (int plane = 0; plane < Sch::planes; ++plane) rows[plane].load(arena + plane * Sch::arena_plane + current * 4);
+      }
+      R sums[padded], place[PlaceSums<Sch>::padded];
+      for (R& x : sums) x = R(T(0));
+      for (R& x : place) x = R(T(0));
+      if constexpr (Sch::flip) {
+        gather<Sch, false, false>(rows[0], t, l, sums);
+        gather<Sch, with_d, with_g>(rows[1], t, l, sums + others);
+        contract<Sch, 0, -1, -1>(rows[0], t, l, q.rows.row(l), place);
+        contract<Sch, -1, moments, slopes>(rows[1], t, l, q.rows.row(l), place);
+      } else {
+        gather<Sch, with_d, with_g>(rows[0], t, l, sums);
+        contract<Sch, 0, moments, slopes>(rows[0], t, l, q.rows.row(l), place);
+      }
+      for (int i = 0; i < padded; i += per_store) sum_quads<T, R::lanes>(sums + i).store(gathered.row(l) + 4 * i);
+      by_place.put(l, place);
+    }
+    Pack<T, W> packs[decltype(gathered)::stride];
+    gathered.read(packs);
+    by_place.add_to(bar, s, count);
+    coefficients_adjoint<Sch>(p, s, count, packs, first_force, material, material_adjoint, step, bar, report);
+  }
+}
+
+}  // namespace jaxmpm

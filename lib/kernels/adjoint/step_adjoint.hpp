@@ -1,0 +1,24 @@
+#pragma once
+// The adjoint kernels of one scheme behind plain function pointers, beside StepKernels.
+#include "kernels/adjoint/g2p.hpp"
+#include "kernels/step_kernels.hpp"
+
+namespace jaxmpm {
+
+template <class T, int Dim>
+struct AdjointKernels {
+  Vector<T, Dim> (*update_nodes)(const T* raw, T mass_cut_off, T* own) = nullptr;
+  /// Adjoint of g2p: `grid` holds the velocities of all blocks, `arena` receives the derivatives by the nodes that the tile saw.
+  void (*g2p)(const Particles<T, Dim>&, const Tile&, const Blocks<Dim>&, const T* grid, const MaterialAdjoint<T, Dim>&,
+              const StepConstants<T>&, const Index<Dim>& origin, T* arena, Particles<T, Dim>& bar, AdjointReport&) = nullptr;
+  /// Adjoint of p2g: `by_sums` holds the derivatives by the sums of all blocks.
+  void (*p2g)(const Particles<T, Dim>&, const Tile&, const Blocks<Dim>&, const T* by_sums, const MaterialKernel<T, Dim>&,
+              const MaterialAdjoint<T, Dim>&, const StepConstants<T>&, const Index<Dim>& origin, Particles<T, Dim>& bar,
+              MaterialReport&) = nullptr;
+};
+
+/// The adjoint kernels of a method. Defined per precision, dimension and spline in kernels/adjoint/adjoint_*.cpp.
+template <class T, int Dim, int S>
+AdjointKernels<T, Dim> adjoint_kernels(deck::Transfer transfer, deck::GradientForm gradient);
+
+}  // namespace jaxmpm

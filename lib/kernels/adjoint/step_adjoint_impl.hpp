@@ -1,0 +1,36 @@
+#pragma once
+#include "kernels/adjoint/grid.hpp"
+#include "kernels/adjoint/step_adjoint.hpp"
+#include "kernels/step_kernels_impl.hpp"
+
+namespace jaxmpm {
+
+template <class Sch>
+AdjointKernels<typename Sch::T, Sch::Dim> adjoint_kernels_of() {
+  using T = typename Sch::T;
+  constexpr int Dim = Sch::Dim;
+  AdjointKernels<T, Dim> k;
+  k.update_nodes = &update_nodes_adjoint<Sch>;
+  k.g2p = [](const Particles<T, Dim>& p, const Tile& tile, const Blocks<Dim>& blocks, const T* grid,
+             const MaterialAdjoint<T, Dim>& material, const StepConstants<T>& step, const Index<Dim>& origin, T* arena,
+             Particles<T, Dim>& bar, AdjointReport& report) {
+    alignas(64) T velocities[Sch::arena_size];
+    load_arena<Sch>(blocks, tile.block, grid, velocities);
+    g2p_adjoint_tile<Sch>(p, tile.begin, tile.end, material, step, origin, velocities, arena, bar, report);
+  };
+  k.p2g = [](const Particles<T, Dim>& p, const Tile& tile, const Blocks<Dim>& blocks, const T* by_sums,
+             const MaterialKernel<T, Dim>& material, const MaterialAdjoint<T, Dim>& adjoint, const StepConstants<T>& step,
+             const Index<Dim>& origin, Particles<T, Dim>& bar, MaterialReport& report) {
+    alignas(64) T arena[Sch::arena_size];
+    load_arena<Sch>(blocks, tile.block, by_sums, arena);
+    p2g_adjoint_tile<Sch>(p, tile.begin, tile.end, material, adjoint, step, origin, arena, bar, report);
+  };
+  return k;
+}
+
+template <class T, int Dim, int S>
+AdjointKernels<T, Dim> adjoint_kernels(deck::Transfer transfer, deck::GradientForm gradient) {
+  return with_scheme<T, Dim, S>(transfer, gradient, [](auto scheme) { return adjoint_kernels_of<decltype(scheme)>(); });
+}
+
+}  // namespace jaxmpm

@@ -1,0 +1,175 @@
+#include "solvers/grid_adjoint.hpp"
+
+#include "core/parallel.hpp"
+
+namespace jaxmpm {
+
+void GridBars::clear(std::size_t segments, std::size_t obstacles) {
+  gravity = {};
+  segment.assign(segments, 0), obstacle.assign(obstacles, 0);
+}
+
+void GridBars::add(const GridBars& other, double gravity_factor) {
+  for (std::size_t c = 0; c < 3; ++c) gravity[c] += gravity_factor * other.gravity[c];
+  for (std::size_t k = 0; k < segment.size(); ++k) segment[k] += other.segment[k];
+  for (std::size_t k = 0; k < obstacle.size(); ++k) obstacle[k] += other.obstacle[k];
+}
+
+template <class T, int Dim>
+void GridAdjoint<T, Dim>::update(const Blocks<Dim>& blocks, const T* arenas, double dt) {
+  const GridConstants<T, Dim> constants = forward_.constants(dt);
+  const ContactBlocks<T, Dim>& contact = forward_.contact_blocks();
+  const std::size_t own_size = kernels_.own_size;
+  own_.resize(blocks.count() * own_size), block_.resize(blocks.count());
+  halo_.resize(contact.wall_blocks().size() * halo_nodes);
+  parallel_for_host("jaxmpm::grid_adjoint", blocks.count(), [&](std::size_t b) {
+    T* own = own_.data() + b * own_size;
+    kernels_.sum(blocks, b, arenas, own);
+    block_[b].clear(segments(), model_.obstacles.size());
+    if (contact.wall_slot()[b] >= 0) return wall_block_adjoint(blocks, b, constants);
+    if (contact.obstacles(b)) obstacles_adjoint(b, constants);
+    const V by_pull = adjoint_.update_nodes(forward_.sums(b), constants.mass_cut_off, own);
+    for (int c = 0; c < Dim; ++c) block_[b].gravity[std::size_t(c)] = double(by_pull[c]);
+  });
+  parallel_for_host("jaxmpm::walls_adjoint", contact.wall_blocks().size(),
+                    [&](std::size_t w) { collect_wall_block(blocks, contact.wall_blocks()[w], constants); });
+  for (const GridBars& block : block_) total_.add(block, dt);  // in the order of blocks
+}
+
+/// Adjoint of the obstacles at one node, which act one after another: `start` is the velocity before the first, `bar` is by the velocity
+/// after the last, then by `start`.
+template <class T, int Dim>
+void GridAdjoint<T, Dim>::obstacle_chain(std::size_t block, int own, const V& start, V& bar, GridBars& bars) const {
+  const auto* nodes = forward_.contact_blocks().obstacles(block);
+  if (!nodes) return;
+  std::vector<std::pair<const ObstacleNode<T, Dim>*, V>> chain;  // with the velocity before each
+  V v = start;
+  for (const ObstacleNode<T, Dim>& node : *nodes) {
+    if (int(node.node) != own) continue;
+    chain.emplace_back(&node, v);
+    const RigidObstacle& o = model_.obstacles[node.obstacle];
+    apply_obstacle<T, Dim>(o.kind, T(o.coefficient), node.normal, T(1), v);
+  }
+  for (auto link = chain.rbegin(); link != chain.rend(); ++link) {
+    const RigidObstacle& o = model_.obstacles[link->first->obstacle];
+    bars.obstacle[link->first->obstacle] +=
+        double(obstacle_adjoint<T, Dim>(o.kind, T(o.coefficient), link->first->normal, link->second, bar));
+  }
+}
+
+/// Adjoint of push_node for the nodes of a block away from walls.
+template <class T, int Dim>
+void GridAdjoint<T, Dim>::obstacles_adjoint(std::size_t b, const GridConstants<T, Dim>& constants) {
+  const bool flip = kernels_.planes == 2;
+  const T* sums = forward_.sums(b);
+  T* bars = own_.data() + b * kernels_.own_size;
+  std::array<bool, cells> done{};
+  for (const ObstacleNode<T, Dim>& node : *forward_.contact_blocks().obstacles(b)) {
+    const T* sum = sums + 4 * node.node;
+    if (done[node.node] || !(sum[0] > constants.mass_cut_off)) continue;
+    done[node.node] = true;
+    T* by_v = bars + 4 * node.node + 1;
+    const T* by_change = bars + cells * 4 + 4 * node.node + 1;
+    V start, bar;
+    for (int c = 0; c < Dim; ++c) {
+      start[c] = (sum[1 + c] + (flip ? sum[cells * 4 + 1 + c] : T(0))) / sum[0] + constants.gravity_step[c];
+      bar[c] = by_v[c] + (flip ? by_change[c] : T(0));  // Δv follows v through the contact
+    }
+    obstacle_chain(b, int(node.node), start, bar, block_[b]);
+    for (int c = 0; c < Dim; ++c) by_v[c] = bar[c] - (flip ? by_change[c] : T(0));
+  }
+}
+
+template <class T, int Dim>
+int GridAdjoint<T, Dim>::halo_node(const Node& node, const Node& first) {
+  int at = 0;
+  for (std::size_t d = 0; d < Dim; ++d) at = at * side + node[d] - first[d] + reach;
+  return at;
+}
+
+/// Adjoint of update_wall_block: derivatives by the node sums around the block go to its halo, what FLIP divides itself stays in own_.
+template <class T, int Dim>
+void GridAdjoint<T, Dim>::wall_block_adjoint(const Blocks<Dim>& blocks, std::size_t b, const GridConstants<T, Dim>& constants) {
+  const Node first = first_node<Dim>(blocks.index[b]);
+  const int* neighbours = blocks.neighbour.data() + b * around;
+  const WallSums<T, Dim> raw = forward_.wall_sums(blocks, b, constants);
+  Sum* halo = halo_.data() + std::size_t(forward_.contact_blocks().wall_slot()[b]) * halo_nodes;
+  std::fill(halo, halo + halo_nodes, Sum{});
+  const auto no_obstacles = [](const Node&, T, V&) {};
+  const auto obstacles = [&](const Node& node, const V& start, V& bar) {
+    const Place<Dim> at = locate<Dim>(neighbours, first, node);
+    if (at.block >= 0) obstacle_chain(std::size_t(at.block), at.own, start, bar, block_[b]);
+  };
+  const auto add = [&](const Node& node, T by_mass, const V& by_momentum) {
+    Sum& sum = halo[halo_node(node, first)];
+    sum.mass += by_mass;
+    for (int c = 0; c < Dim; ++c) sum.momentum[c] += by_momentum[c];
+  };
+  const auto add_coefficient = [&](int segment, T by) { block_[b].segment[std::size_t(segment)] += double(by); };
+  const WallAdjoint<T, Dim, WallSums<T, Dim>, decltype(no_obstacles), decltype(obstacles), decltype(add), decltype(add_coefficient)> walls(
+      forward_.walls(), raw, no_obstacles, constants.mass_cut_off, obstacles, add, add_coefficient);
+  const T* bars = own_.data() + b * kernels_.own_size;
+  for (int own = 0; own < cells; ++own) {
+    const Node node = node_of<Dim>(first, own);
+    if (!standing<T, Dim>(forward_.walls(), node).reached) continue;
+    V bar;
+    const bool moves = forward_.sums(b)[4 * own] > constants.mass_cut_off;  // else Δv is zero whatever v is
+    for (int c = 0; c < Dim; ++c)
+      bar[c] = bars[4 * own + 1 + c] + (kernels_.planes == 2 && moves ? bars[cells * 4 + 4 * own + 1 + c] : T(0));
+    walls.velocity(node, bar);
+  }
+  own_division_adjoint(b);
+}
+
+/// FLIP's Δv = v − p/m with the node's own sums: what of it does not pass through v. Leaves {m̄, p̄} and no impulse in own_.
+template <class T, int Dim>
+void GridAdjoint<T, Dim>::own_division_adjoint(std::size_t b) {
+  T* bars = own_.data() + b * kernels_.own_size;
+  const T *sums = forward_.sums(b), cut_off = forward_.constants(0).mass_cut_off;
+  for (int own = 0; own < cells; ++own) {
+    T* by_sums = bars + 4 * own;
+    const T* sum = sums + 4 * own;
+    for (int c = 0; c < 4; ++c) by_sums[c] = T(0);
+    if (kernels_.planes == 1) continue;
+    T* by_change = by_sums + cells * 4;
+    for (int c = 1; c <= Dim; ++c) {
+      if (sum[0] > cut_off) by_sums[c] = -by_change[c] / sum[0], by_sums[0] += by_change[c] * sum[c] / (sum[0] * sum[0]);
+      by_change[c] = T(0);
+    }
+  }
+}
+
+/// Adds the halos that reach a wall block, in the order of neighbours: P = p + impulse + m Δt g.
+template <class T, int Dim>
+void GridAdjoint<T, Dim>::collect_wall_block(const Blocks<Dim>& blocks, std::size_t b, const GridConstants<T, Dim>& constants) {
+  const Node first = first_node<Dim>(blocks.index[b]);
+  T* bars = own_.data() + b * kernels_.own_size;
+  const T* sums = forward_.sums(b);
+  for (int m = 0; m < around; ++m) {
+    const int other = blocks.neighbour[b * around + std::size_t(m)];
+    const int slot = other < 0 ? -1 : forward_.contact_blocks().wall_slot()[std::size_t(other)];
+    if (slot < 0) continue;
+    const Node other_first = first_node<Dim>(blocks.index[std::size_t(other)]);
+    const Sum* halo = halo_.data() + std::size_t(slot) * halo_nodes;
+    for (int own = 0; own < cells; ++own) {
+      const Node node = node_of<Dim>(first, own);
+      bool covered = true;
+      for (std::size_t d = 0; d < Dim; ++d) covered = covered && node[d] >= other_first[d] - reach && node[d] < other_first[d] + B + reach;
+      if (!covered) continue;
+      const Sum& by = halo[halo_node(node, other_first)];
+      T* by_sums = bars + 4 * own;
+      by_sums[0] += by.mass;
+      for (int c = 0; c < Dim; ++c) {
+        by_sums[0] += by.momentum[c] * constants.gravity_step[c];
+        by_sums[1 + c] += by.momentum[c];
+        if (kernels_.planes == 2) by_sums[cells * 4 + 1 + c] += by.momentum[c];
+        block_[b].gravity[std::size_t(c)] += double(sums[4 * own] * by.momentum[c]);
+      }
+    }
+  }
+}
+
+template class GridAdjoint<double, 2>;
+template class GridAdjoint<double, 3>;
+
+}  // namespace jaxmpm

@@ -1,0 +1,62 @@
+#pragma once
+// Adjoint of the grid update (grid_update.hpp), on the sums that it kept.
+#include "contact/wall_adjoint.hpp"
+#include "kernels/adjoint/step_adjoint.hpp"
+#include "solvers/grid_update.hpp"
+
+namespace jaxmpm {
+
+/// Derivatives by the constants of the grid update.
+struct GridBars {
+  Point gravity{};               // per m/s²
+  std::vector<double> segment;   // friction coefficients of all faces' segments, in the order of WallTable
+  std::vector<double> obstacle;  // coefficients of the obstacles, in deck order
+  void clear(std::size_t segments, std::size_t obstacles);
+  void add(const GridBars& other, double gravity_factor);
+};
+
+template <class T, int Dim>
+class GridAdjoint {
+ public:
+  /// All have to outlive this object.
+  GridAdjoint(const Model& model, const StepKernels<T, Dim>& kernels, const AdjointKernels<T, Dim>& adjoint,
+              const GridUpdate<T, Dim>& forward)
+      : model_(model), kernels_(kernels), adjoint_(adjoint), forward_(forward) {}
+
+  /// From derivatives by what the tiles gathered (their arenas) to those by what they scattered: afterwards by_sums() holds {m̄, p̄} (and
+  /// FLIP's {–, impulse}) of every active block. Adds to bars().
+  void update(const Blocks<Dim>& blocks, const T* arenas, double dt);
+  const T* by_sums() const { return own_.data(); }
+  const GridBars& bars() const { return total_; }
+  void clear_bars() { total_.clear(segments(), model_.obstacles.size()); }
+
+ private:
+  using Node = Index<Dim>;
+  using V = Vector<T, Dim>;
+  static constexpr int B = BlockShape<Dim, 2>::B, cells = BlockShape<Dim, 2>::cells, around = BlockShape<Dim, 2>::neighbours;
+  /// Nodes around a wall block whose sums its own nodes depend on, along each axis: images lie at most two nodes away.
+  static constexpr int reach = 2, side = B + 2 * reach, halo_nodes = Dim == 2 ? side * side : side * side * side;
+  struct Sum {
+    T mass;
+    V momentum;
+  };
+
+  std::size_t segments() const { return forward_.contact_blocks().table().coefficient.size(); }
+  void obstacles_adjoint(std::size_t b, const GridConstants<T, Dim>& constants);
+  void wall_block_adjoint(const Blocks<Dim>& blocks, std::size_t b, const GridConstants<T, Dim>& constants);
+  void collect_wall_block(const Blocks<Dim>& blocks, std::size_t b, const GridConstants<T, Dim>& constants);
+  void own_division_adjoint(std::size_t b);
+  void obstacle_chain(std::size_t block, int own, const V& start, V& bar, GridBars& bars) const;
+  static int halo_node(const Node& node, const Node& first);
+
+  const Model& model_;
+  const StepKernels<T, Dim>& kernels_;
+  const AdjointKernels<T, Dim>& adjoint_;
+  const GridUpdate<T, Dim>& forward_;
+  Array<T> own_;
+  std::vector<Sum> halo_;  // [wall block][node]: derivatives by NodeSums
+  std::vector<GridBars> block_;
+  GridBars total_;
+};
+
+}  // namespace jaxmpm

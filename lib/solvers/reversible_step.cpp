@@ -1,0 +1,238 @@
+#include "solvers/reversible_step.hpp"
+
+#include <algorithm>
+
+#include "core/parallel.hpp"
+#include "materials/constants.hpp"
+
+namespace jaxmpm {
+
+/// ExplicitStep::step(), read upwards. Nothing of the grid is kept: the first half of the step is done again.
+template <class T, int Dim>
+void ReversibleStep<T, Dim>::step_adjoint(double dt) {
+  this->constants_.dt = T(dt);
+  Orders orders;
+  const bool sorted = this->sort_is_due();
+  if (sorted) this->sort(&orders);
+  this->p2g();
+  this->update_grid(dt);
+
+  g2p_adjoint();  // Eqs 15–18 and the stress (19–21): by the particles' end values → by velocities of nodes, and by start values
+  update_grid_adjoint(dt);  // Eqs 13–14: by velocities → by sums of nodes
+  p2g_adjoint();            // Eqs 10–12: by sums of nodes → by the particles' start values
+  if (sorted) unsort(orders);
+  add_reports();
+}
+
+template <class T, int Dim>
+ReversibleStep<T, Dim>::ReversibleStep(const Model& model)
+    : ExplicitStep<T, Dim>(model),
+      adjoint_(with_spline(model.method.basis,
+                           [&](auto nodes) { return adjoint_kernels<T, Dim, nodes>(model.method.transfer, model.method.gradient); })),
+      grid_adjoint_(this->model_, this->kernels_, adjoint_, this->grid_) {
+  for (const Body& body : model.bodies) material_adjoints_.push_back(make_material_adjoint<T, Dim>(body.material));
+}
+
+template <class T, int Dim>
+void ReversibleStep<T, Dim>::g2p_adjoint() {
+  const auto& tiles = this->blocks_.tiles;
+  tile_reports_.assign(tiles.size(), {});
+  parallel_for_host("jaxmpm::g2p_adjoint", tiles.size(), [&](std::size_t t) {
+    const Tile& tile = tiles[t];
+    adjoint_.g2p(this->bodies_[tile.body], tile, this->blocks_, this->grid_.grid(), *material_adjoints_[tile.body], this->constants_,
+                 this->arena_origin(tile), this->arenas_.data() + t * this->kernels_.arena_size, bars_[tile.body], tile_reports_[t]);
+  });
+}
+
+template <class T, int Dim>
+void ReversibleStep<T, Dim>::update_grid_adjoint(double dt) {
+  grid_adjoint_.update(this->blocks_, this->arenas_.data(), dt);
+}
+
+template <class T, int Dim>
+void ReversibleStep<T, Dim>::p2g_adjoint() {
+  const auto& tiles = this->blocks_.tiles;
+  parallel_for_host("jaxmpm::p2g_adjoint", tiles.size(), [&](std::size_t t) {
+    const Tile& tile = tiles[t];
+    adjoint_.p2g(this->bodies_[tile.body], tile, this->blocks_, grid_adjoint_.by_sums(), *this->materials_[tile.body],
+                 *material_adjoints_[tile.body], this->constants_, this->arena_origin(tile), bars_[tile.body], tile_reports_[t].material);
+  });
+}
+
+/// Puts the derivatives back into the order that the particles had before the sort.
+template <class T, int Dim>
+void ReversibleStep<T, Dim>::unsort(const Orders& orders) {
+  for (std::size_t b = 0; b < bars_.size(); ++b)
+    bars_[b].for_each_field([&](const std::string&, auto& field) {
+      if (field.empty()) return;
+      const std::decay_t<decltype(field)> sorted(field);
+      for (std::size_t a = 0; a < field.size(); ++a) field[orders[b][a]] = sorted[a];
+    });
+}
+
+/// Adds up what the tiles report, in their order.
+template <class T, int Dim>
+void ReversibleStep<T, Dim>::add_reports() {
+  for (std::size_t t = 0; t < tile_reports_.size(); ++t) {
+    const AdjointReport& report = tile_reports_[t];
+    MaterialReport& total = material_totals_[this->blocks_.tiles[t].body];
+    for (std::size_t k = 0; k < total.constants.size(); ++k) total.constants[k] += report.material.constants[k];
+    total.at_kinks += report.material.at_kinks;
+    flip_fraction_ += report.flip_fraction;
+  }
+}
+
+template <class T, int Dim>
+std::uint64_t ReversibleStep<T, Dim>::at_kinks() const {
+  std::uint64_t sum = 0;
+  for (const MaterialReport& total : material_totals_) sum += total.at_kinks;
+  return sum;
+}
+
+template <class T, int Dim>
+std::size_t ReversibleStep<T, Dim>::kept_bytes() const {
+  std::size_t bytes = 0;
+  for (const Particles<T, Dim>& p : this->bodies_)
+    p.for_each_field([&](const std::string&, const auto& field) { bytes += field.size() * sizeof(field[0]); });
+  return bytes + this->blocks_.tiles.size() * (sizeof(Tile) + sizeof(std::int64_t));
+}
+
+template <class T, int Dim>
+void ReversibleStep<T, Dim>::keep(std::unique_ptr<KeptState>& into) {
+  if (epoch_sorts_ != this->sorts_) {
+    auto epoch = std::make_shared<Epoch>();
+    for (const Particles<T, Dim>& p : this->bodies_) epoch->mass.push_back(p.mass), epoch->id.push_back(p.id);
+    epoch->tiles = this->blocks_.tiles, epoch->tile_key = this->tile_key_;
+    epoch_ = std::move(epoch), epoch_sorts_ = this->sorts_;
+  }
+  if (!into) into = std::make_unique<Kept>();
+  Kept& kept = static_cast<Kept&>(*into);
+  kept.epoch = epoch_, kept.numbers = this->numbers_;
+  kept.bodies.resize(this->bodies_.size());
+  for (std::size_t b = 0; b < kept.bodies.size(); ++b) {
+    const Particles<T, Dim>& p = this->bodies_[b];
+    kept.bodies[b].position = p.position, kept.bodies[b].velocity = p.velocity, kept.bodies[b].compression = p.compression;
+    kept.bodies[b].affine = p.affine, kept.bodies[b].history = p.history;
+  }
+}
+
+template <class T, int Dim>
+void ReversibleStep<T, Dim>::go_back(const KeptState& state) {
+  const Kept& kept = static_cast<const Kept&>(state);
+  const bool same = kept.epoch == epoch_ && epoch_sorts_ == this->sorts_;
+  for (std::size_t b = 0; b < kept.bodies.size(); ++b) {
+    Particles<T, Dim>& p = this->bodies_[b];
+    const Particles<T, Dim>& from = kept.bodies[b];
+    p.position = from.position, p.velocity = from.velocity, p.compression = from.compression;
+    p.affine = from.affine, p.history = from.history;
+    if (!same) p.mass = kept.epoch->mass[b], p.id = kept.epoch->id[b];
+  }
+  this->numbers_ = kept.numbers;
+  if (same) return;
+  epoch_ = kept.epoch, epoch_sorts_ = this->sorts_;
+  this->blocks_.tiles = epoch_->tiles, this->tile_key_ = epoch_->tile_key;
+  this->rebuild_blocks();
+}
+
+template <class T, int Dim>
+void ReversibleStep<T, Dim>::start_reverse() {
+  this->grid_.keep_sums();
+  grid_adjoint_.clear_bars();
+  material_totals_.assign(this->bodies_.size(), {});
+  flip_fraction_ = 0;
+  bars_.assign(this->bodies_.size(), {});
+  for (std::size_t b = 0; b < bars_.size(); ++b) {
+    const Particles<T, Dim>& p = this->bodies_[b];
+    const std::size_t n = p.count();
+    Particles<T, Dim>& bar = bars_[b];
+    const auto zeros = [&](std::size_t arrays) { return std::vector<Array<T>>(arrays, Array<T>(n, T(0))); };
+    bar.position.assign(Dim, Array<double>(n, 0.0)), bar.velocity = zeros(Dim), bar.affine = zeros(p.affine.size());
+    bar.history = zeros(p.history.size()), bar.mass.assign(n, T(0)), bar.compression.assign(n, T(0));
+  }
+}
+
+template <class T, int Dim>
+void ReversibleStep<T, Dim>::add_gradient(const SnapshotGradient& by) {
+  for (std::size_t b = 0; b < by.size(); ++b) {
+    add_body_gradient(b, by[b]);
+    if (!by[b].stress.empty()) add_stress_gradient(b, by[b]);
+  }
+}
+
+/// A body's ids are consecutive: a snapshot in order of ids has particle a at id − first.
+template <class T, int Dim>
+void ReversibleStep<T, Dim>::add_body_gradient(std::size_t b, const BodySnapshot& by) {
+  const Particles<T, Dim>& p = this->bodies_[b];
+  Particles<T, Dim>& bar = bars_[b];
+  if (p.count() == 0) return;
+  const std::uint32_t first = *std::min_element(p.id.begin(), p.id.end());
+  const double rho0 = double(this->materials_[b]->reference_density()), h = this->model_.cell_size;
+  const int strain = this->materials_[b]->plastic_strain_index();
+  for (std::size_t a = 0; a < p.count(); ++a) {
+    const std::size_t i = p.id[a] - first;
+    for (std::size_t d = 0; d < Dim; ++d) {
+      if (!by.position.empty()) bar.position[d][a] += h * by.position[i * Dim + d];
+      if (!by.velocity.empty()) bar.velocity[d][a] += T(by.velocity[i * Dim + d]);
+    }
+    if (!by.mass.empty()) bar.mass[a] += T(by.mass[i]);
+    if (!by.plastic_strain.empty() && strain >= 0) bar.history[std::size_t(strain)][a] += T(by.plastic_strain[i]);
+    if (by.density.empty()) continue;
+    bar.compression[a] += T(rho0 * by.density[i]);  // ρ = ρ0 (1 + e)
+    material_totals_[b].constants[0] += (1 + double(p.compression[a])) * by.density[i];
+  }
+}
+
+template <class T, int Dim>
+void ReversibleStep<T, Dim>::add_stress_gradient(std::size_t b, const BodySnapshot& by) {
+  constexpr int W = native_lanes<T>, size = Symmetric<T, Dim>::size;
+  const Particles<T, Dim>& p = this->bodies_[b];
+  if (p.count() == 0) return;
+  const std::uint32_t first = *std::min_element(p.id.begin(), p.id.end());
+  for (std::size_t s = 0; s < p.count(); s += W) {
+    const int count = int(std::min<std::size_t>(W, p.count() - s));
+    alignas(64) T by_sigma[size][W] = {};
+    for (int l = 0; l < count; ++l)
+      for (int k = 0; k < size; ++k) by_sigma[k][l] = T(by.stress[(p.id[s + std::size_t(l)] - first) * 6 + std::size_t(k)]);
+    material_adjoints_[b]->stress(p, s, count, by_sigma, bars_[b], material_totals_[b]);
+  }
+}
+
+template <class T, int Dim>
+ModelGradient ReversibleStep<T, Dim>::gradient() const {
+  ModelGradient g;
+  const GridBars& grid = grid_adjoint_.bars();
+  g.gravity = grid.gravity, g.obstacle_coefficient = grid.obstacle, g.flip_fraction = flip_fraction_;
+  std::size_t segment = 0;
+  for (std::size_t f = 0; f < 2 * Dim; ++f)
+    for (std::size_t k = 0; k < this->model_.faces[f].coefficient.size(); ++k) g.coefficient[f].push_back(grid.segment[segment++]);
+  for (std::size_t b = 0; b < bars_.size(); ++b) g.bodies.push_back(body_gradient(b));
+  return g;
+}
+
+template <class T, int Dim>
+BodyGradient ReversibleStep<T, Dim>::body_gradient(std::size_t b) const {
+  const Particles<T, Dim>& p = this->bodies_[b];
+  const Particles<T, Dim>& bar = bars_[b];
+  const std::size_t n = p.count();
+  BodyGradient by;
+  MaterialReport constants = material_totals_[b];
+  std::vector<double> by_compression(n), by_stress(6 * n);
+  material_adjoints_[b]->start(p, bar, by_compression.data(), by_stress.data(), constants);
+  by.material = by_material_numbers(this->model_.bodies[b].material, constants.constants.data());
+  by.initial.velocity.resize(n), by.initial.mass.resize(n), by.initial.compression.resize(n), by.initial.stress.resize(n);
+  if (n == 0) return by;
+  const std::uint32_t first = *std::min_element(p.id.begin(), p.id.end());
+  for (std::size_t a = 0; a < n; ++a) {
+    const std::size_t i = p.id[a] - first;
+    for (std::size_t d = 0; d < Dim; ++d) by.initial.velocity[i][d] = double(bar.velocity[d][a]);
+    by.initial.mass[i] = double(bar.mass[a]);
+    by.initial.compression[i] = by_compression[a];
+    for (std::size_t k = 0; k < 6; ++k) by.initial.stress[i][k] = by_stress[6 * a + k];
+  }
+  return by;
+}
+
+template class ReversibleStep<double, 2>;
+template class ReversibleStep<double, 3>;
+
+}  // namespace jaxmpm

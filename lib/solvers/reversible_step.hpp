@@ -1,0 +1,64 @@
+#pragma once
+// The explicit stepper with its adjoint: step() is ExplicitStep's, step_adjoint() faces it in reversible_step.cpp.
+#include "solvers/explicit_step.hpp"
+#include "solvers/grid_adjoint.hpp"
+#include "solvers/reversible.hpp"
+
+namespace jaxmpm {
+
+template <class T, int Dim>
+class ReversibleStep final : public ExplicitStep<T, Dim>, public ReversibleSolver {
+ public:
+  explicit ReversibleStep(const Model& model);
+
+  Solver& forward() override { return *this; }
+  std::size_t kept_bytes() const override;
+  void keep(std::unique_ptr<KeptState>& into) override;
+  void go_back(const KeptState& kept) override;
+
+  void start_reverse() override;
+  void add_gradient(const SnapshotGradient& by) override;
+  void step_adjoint(double dt) override;
+  ModelGradient gradient() const override;
+  std::uint64_t at_kinks() const override;
+
+  /// Derivatives by the particles' fields, in storage order (position: per cell); `id` is empty. For tests, which may set them.
+  std::vector<Particles<T, Dim>>& bars() { return bars_; }
+  const std::vector<Particles<T, Dim>>& particles() const { return this->bodies_; }
+
+ private:
+  using Orders = std::vector<std::vector<std::uint32_t>>;
+  /// What stays the same from sort to sort.
+  struct Epoch {
+    std::vector<Array<T>> mass;  // [body]
+    std::vector<Array<std::uint32_t>> id;
+    std::vector<Tile> tiles;
+    std::vector<std::int64_t> tile_key;
+  };
+  struct Kept final : KeptState {
+    std::shared_ptr<const Epoch> epoch;
+    std::vector<Particles<T, Dim>> bodies;  // position, velocity, compression, affine and history
+    StepNumbers numbers;
+  };
+
+  void g2p_adjoint();
+  void update_grid_adjoint(double dt);
+  void p2g_adjoint();
+  void unsort(const Orders& orders);
+  void add_reports();
+  void add_body_gradient(std::size_t b, const BodySnapshot& by);
+  void add_stress_gradient(std::size_t b, const BodySnapshot& by);
+  BodyGradient body_gradient(std::size_t b) const;
+
+  AdjointKernels<T, Dim> adjoint_;
+  std::vector<std::unique_ptr<MaterialAdjoint<T, Dim>>> material_adjoints_;
+  GridAdjoint<T, Dim> grid_adjoint_;
+  std::shared_ptr<const Epoch> epoch_;             // of the present state, unless it has been sorted since:
+  std::uint64_t epoch_sorts_ = ~std::uint64_t(0);  // sorts_ when it was
+  std::vector<Particles<T, Dim>> bars_;            // derivatives by the particles' fields, in storage order
+  std::vector<AdjointReport> tile_reports_;
+  std::vector<MaterialReport> material_totals_;  // [body]
+  double flip_fraction_ = 0;
+};
+
+}  // namespace jaxmpm
