@@ -59,7 +59,7 @@ class Tape {
 template <class P>
 struct Taped {
   P value;
-  int node;
+  int node = -1;  // so that Taped{} is the constant 0
 
   Taped() = default;
   JAXMPM_INLINE Taped(typename P::Scalar constant) : value(constant), node(-1) {}  // implicit, so that constants mix

@@ -89,7 +89,7 @@ deck::NeoHookean rubber() {
   return m;
 }
 
-constexpr double tolerance = 1e-12, dt = 2e-4;
+constexpr double tolerance = 1e-14, dt = 2e-4;
 
 }  // namespace
 
