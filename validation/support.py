@@ -93,6 +93,15 @@ def reference(name):
     return columns
 
 
+def law_value(laws, law, quantity, aspect):
+    """Value of a law of granular_collapse_scaling_laws.csv at an aspect ratio; NaN outside its range."""
+    for i, name in enumerate(laws["law"]):
+        low, high = np.nan_to_num(laws["a_min"][i]), laws["a_max"][i]
+        if name == law and laws["quantity"][i] == quantity and np.isfinite(laws["coef"][i]) and low <= aspect and not aspect > high:
+            return laws["coef"][i] * aspect ** laws["exponent"][i]
+    return np.nan
+
+
 def depth_profile(frame, deck, axis=0, width=None):
     """Depth of the material, m, at the middle of columns `width` wide (a cell unless given): volume in the column over its footprint, each
     particle spread linearly over the two nearest columns. 2D. Volumes are those at the start, so that the profile holds all the mass."""

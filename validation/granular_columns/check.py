@@ -3,19 +3,11 @@ import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from support import Check, np, plt, reference  # noqa: E402
+from support import Check, law_value, np, plt, reference  # noqa: E402
 
 BASE = 0.14                                            # L0, m
 PAPER = {0.5: 2.05, 1.0: 3.97, 2.0: 7.76, 3.0: 10.65}  # Du & He 2025, section 4.2.2; base and measure are not stated there
 LAWS = ("Lube2005", "Lajeunesse2005", "LSP2011")       # plane columns: experiments, experiments, continuum computation
-
-
-def law_value(laws, law, quantity, aspect):
-    for i, name in enumerate(laws["law"]):
-        low, high = np.nan_to_num(laws["a_min"][i]), laws["a_max"][i]
-        if name == law and laws["quantity"][i] == quantity and np.isfinite(laws["coef"][i]) and low <= aspect and not aspect > high:
-            return laws["coef"][i] * aspect ** laws["exponent"][i]
-    return np.nan
 
 
 def main():
