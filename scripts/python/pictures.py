@@ -144,8 +144,15 @@ def draw_2d(axes, frame, results, field, limits, box):
     size = max(0.4, 1.25 * spacing * width / (box[0][1] - box[0][0])) ** 2
     drawn = axes.scatter(position[:, 0], position[:, 1], c=values, s=size, cmap="viridis", vmin=limits[0], vmax=limits[1], linewidths=0, rasterized=True)
     draw_scene(axes, results.deck, results.deck_directory)
-    axes.set_xlabel("x  m"), axes.set_ylabel("y  m")
+    label_axes(axes, 0, 1)
     return drawn
+
+
+def label_axes(axes, horizontal, vertical):
+    """Names of the axes, and few enough ticks for coordinates of a national grid, which are long, to fit."""
+    axes.set_xlabel(f"{AXES[horizontal]}  m"), axes.set_ylabel(f"{AXES[vertical]}  m")
+    if max(np.abs(axes.get_xlim())) >= 1e4:
+        axes.locator_params(axis="x", nbins=5)
 
 
 def splat(points, depth, values, spacing, box, pixels=1100):
@@ -177,5 +184,5 @@ def draw_3d(axes, frame, results, field, limits, box, pair):
     axes.set_xlim(a, b), axes.set_ylim(c, d)
     draw_scene(axes, results.deck, results.deck_directory, *pair)
     axes.set_aspect("equal")
-    axes.set_xlabel(f"{AXES[pair[0]]}  m"), axes.set_ylabel(f"{AXES[pair[1]]}  m")
+    label_axes(axes, *pair)
     return matplotlib.cm.ScalarMappable(matplotlib.colors.Normalize(*limits), "viridis")
