@@ -1,8 +1,10 @@
 #include "core/provenance.hpp"
 
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <Kokkos_Core.hpp>
+#include <fstream>
 
 #include "jaxmpm_git_commit.hpp"  // written at build time, see cmake/provenance.cmake
 
@@ -58,6 +60,12 @@ const Provenance& provenance() {
   static const Provenance facts{JAXMPM_VERSION,   JAXMPM_GIT_COMMIT, compiler(),          JAXMPM_BUILD_TYPE,
                                 kokkos_version(), kokkos_backends(), widest_vector_bits()};
   return facts;
+}
+
+std::size_t resident_bytes() {
+  std::size_t program = 0, resident = 0;
+  std::ifstream("/proc/self/statm") >> program >> resident;
+  return resident * std::size_t(sysconf(_SC_PAGESIZE));
 }
 
 std::size_t peak_memory_bytes() {

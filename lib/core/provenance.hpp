@@ -18,5 +18,7 @@ const Provenance& provenance();
 
 /// Largest memory that this process has had resident so far, bytes.
 std::size_t peak_memory_bytes();
+/// Memory that the process occupies now.
+std::size_t resident_bytes();
 
 }  // namespace jaxmpm

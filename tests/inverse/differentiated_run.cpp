@@ -1,0 +1,204 @@
+// Gradients of whole runs against central differences, and what they must not depend on: the memory budget.
+#include "inverse/differentiated_run.hpp"
+
+#include <catch2/catch.hpp>
+#include <map>
+
+#include "inverse/checkpoint_schedule.hpp"
+#include "solvers/scenes.hpp"
+
+using namespace jaxmpm;
+
+namespace {
+
+/// Σ over its times of a fixed combination of positions, velocities, densities and stresses, so that every one matters.
+class Everything : public Observer {
+ public:
+  explicit Everything(std::vector<double> times) : times_(std::move(times)) {}
+  const std::vector<double>& times() const override { return times_; }
+  FieldSelection needs() const override {
+    FieldSelection fields;
+    fields.velocity = fields.density = fields.stress = true;
+    return fields;
+  }
+  void look(std::size_t index, const Moment&, const std::vector<BodySnapshot>& bodies) override {
+    if (index == 0) loss_ = size_ = 0;
+    const auto add = [&](double term) { loss_ += term, size_ += std::abs(term); };
+    const SnapshotGradient by = combination(bodies);
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+      for (std::size_t i = 0; i < bodies[b].position.size(); ++i)
+        add(by[b].position[i] * bodies[b].position[i]), add(by[b].velocity[i] * bodies[b].velocity[i]);
+      for (std::size_t i = 0; i < bodies[b].density.size(); ++i) add(by[b].density[i] * bodies[b].density[i]);
+      for (std::size_t i = 0; i < bodies[b].stress.size(); ++i) add(by[b].stress[i] * bodies[b].stress[i]);
+    }
+    last_ = by;
+  }
+  double loss() const override { return loss_; }
+  /// Sum of the sizes of all terms of the loss.
+  double size() const { return size_; }
+  const std::vector<double>& residuals() const override { return residuals_; }
+  SnapshotGradient gradient(std::size_t) const override { return last_; }
+
+ private:
+  static SnapshotGradient combination(const std::vector<BodySnapshot>& bodies) {
+    SnapshotGradient by(bodies.size());
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+      const auto waves = [&](std::size_t n, double size, double phase) {
+        std::vector<double> w(n);
+        for (std::size_t i = 0; i < n; ++i) w[i] = size * std::sin(0.37 * double(i) + phase);
+        return w;
+      };
+      by[b].position = waves(bodies[b].position.size(), 10, 0.1), by[b].velocity = waves(bodies[b].velocity.size(), 1, 0.7);
+      by[b].density = waves(bodies[b].density.size(), 0.01, 0.3), by[b].stress = waves(bodies[b].stress.size(), 1e-3, 1.9);
+    }
+    return by;
+  }
+  std::vector<double> times_, residuals_;
+  double loss_ = 0, size_ = 0;
+  SnapshotGradient last_;
+};
+
+Model scene(int dim, deck::Transfer transfer, const deck::Material& first, const deck::Material& second, deck::ContactKind kind) {
+  deck::Method method;
+  method.transfer = transfer, method.precision = deck::Precision::f64, method.flip_fraction = 0.9;
+  Model model = busy_scene(dim, method, first, second, kind);
+  model.time.step = 1e-4, model.time.end = 1;
+  return model;
+}
+
+ModelGradient gradient_of(const Model& model, const StepSequence& steps, Observer& observer, std::size_t snapshots) {
+  MemoryPlan plan;
+  plan.steps = steps.dt.size(), plan.snapshots = snapshots;
+  RunCost cost;
+  return differentiate_run(model, steps, observer, plan, cost, {});
+}
+
+/// Central difference of the loss by a number of the model, over the same steps, and what round-off leaves uncertain of it.
+struct Difference {
+  double value, uncertain;
+};
+Difference difference(const Model& model, const StepSequence& steps, Everything& observer, const std::function<double&(Model&)>& number,
+                      double change) {
+  double loss[2];
+  for (const int side : {0, 1}) {
+    Model other = model;
+    number(other) += side == 0 ? -change : change;
+    replay_run(other, steps, observer, {});
+    loss[side] = observer.loss();
+  }
+  return {(loss[1] - loss[0]) / (2 * change), 2e-15 * observer.size() / change};
+}
+
+struct Number {
+  std::function<double&(Model&)> number;
+  double change, gradient;
+};
+
+/// Numbers of the model that enter the step, with their derivatives.
+std::map<std::string, Number> numbers(const Model& model, const ModelGradient& g) {
+  std::map<std::string, Number> all;
+  all["gravity"] = {[](Model& m) -> double& { return m.gravity[1]; }, 1e-4, g.gravity[1]};
+  for (const std::size_t face : {std::size_t(0), std::size_t(2)})
+    for (std::size_t k = 0; k < model.faces[face].coefficient.size(); ++k)
+      all["face " + std::to_string(face) + " segment " + std::to_string(k)] = {
+          [=](Model& m) -> double& { return m.faces[face].coefficient[k]; }, 1e-6, g.coefficient[face][k]};
+  all["obstacle"] = {[](Model& m) -> double& { return m.obstacles[0].coefficient; }, 1e-6, g.obstacle_coefficient[0]};
+  all["velocity of 3"] = {[](Model& m) -> double& { return m.bodies[0].initial.velocity[3][1]; }, 1e-5, g.bodies[0].initial.velocity[3][1]};
+  all["mass of 5"] = {[](Model& m) -> double& { return m.bodies[0].initial.mass[5]; }, 1e-6, g.bodies[0].initial.mass[5]};
+  all["compression of 7"] = {[](Model& m) -> double& { return m.bodies[0].initial.compression[7]; }, 1e-8,
+                             g.bodies[0].initial.compression[7]};
+  all["stress of 9"] = {[](Model& m) -> double& { return m.bodies[1].initial.stress[9][3]; }, 1e-2, g.bodies[1].initial.stress[9][3]};
+  return all;
+}
+
+void check(const Model& model, const std::map<std::string, Number>& all, const StepSequence& steps, Everything& observer) {
+  for (const auto& [name, n] : all) {
+    const Difference measured = difference(model, steps, observer, n.number, n.change);
+    INFO(name << ": gradient " << n.gradient << ", central difference " << measured.value << " ± " << measured.uncertain);
+    CHECK(std::abs(n.gradient - measured.value) <= 1e-6 * std::abs(measured.value) + measured.uncertain);
+  }
+}
+
+template <class Material>
+Number material_number(std::size_t body, double Material::*member, double change, const std::string& key, const ModelGradient& g) {
+  return {[=](Model& m) -> double& { return std::get<Material>(m.bodies[body].material).*member; }, change,
+          g.bodies[body].material.at(key)};
+}
+
+}  // namespace
+
+TEST_CASE("gradients of a run agree with central differences") {
+  const int dim = GENERATE(2, 3);
+  const auto transfer = GENERATE(deck::Transfer::apic, deck::Transfer::flip);
+  const auto kind = GENERATE(deck::ContactKind::friction, deck::ContactKind::no_slip);
+  deck::LinearElastic elastic;
+  elastic.density = 1500, elastic.youngs_modulus = 1e5, elastic.poisson_ratio = 0.3;
+  const Model model = scene(dim, transfer, water(2), elastic, kind);
+  Everything observer({0, 4e-4, 1e-3});
+  const StepSequence steps = record_run(model, observer, {});
+  CHECK(steps.dt.size() == 10);
+  const ModelGradient g = gradient_of(model, steps, observer, 4);
+  CAPTURE(dim, int(transfer), int(kind));
+  auto all = numbers(model, g);
+  all["density"] = material_number(0, &deck::Newtonian::density, 1e-3, "density", g);
+  all["sound speed"] = material_number(0, &deck::Newtonian::sound_speed, 1e-5, "sound_speed", g);
+  all["viscosity"] = material_number(0, &deck::Newtonian::viscosity, 1e-4, "viscosity", g);
+  all["Young's modulus"] = material_number(1, &deck::LinearElastic::youngs_modulus, 1, "youngs_modulus", g);
+  all["Poisson's ratio"] = material_number(1, &deck::LinearElastic::poisson_ratio, 1e-6, "poisson_ratio", g);
+  if (transfer == deck::Transfer::flip)
+    all["flip fraction"] = {[](Model& m) -> double& { return m.method.flip_fraction; }, 1e-6, g.flip_fraction};
+  check(model, all, steps, observer);
+}
+
+TEST_CASE("gradients by a granular material's numbers agree with central differences") {
+  deck::NeoHookean rubber;
+  rubber.density = 1100, rubber.youngs_modulus = 1e5, rubber.poisson_ratio = 0.4;
+  deck::DruckerPrager loam = sand();
+  loam.cohesion = 200;
+  const Model model = scene(2, deck::Transfer::apic, loam, rubber, deck::ContactKind::friction);
+  Everything observer({1e-3});
+  const StepSequence steps = record_run(model, observer, {});
+  const ModelGradient g = gradient_of(model, steps, observer, 3);
+  auto all = numbers(model, g);
+  all["friction angle"] = material_number(0, &deck::DruckerPrager::friction_angle, 1e-6, "friction_angle", g);
+  all["dilation angle"] = material_number(0, &deck::DruckerPrager::dilation_angle, 1e-6, "dilation_angle", g);
+  all["cohesion"] = material_number(0, &deck::DruckerPrager::cohesion, 1e-5, "cohesion", g);
+  all["density"] = material_number(0, &deck::DruckerPrager::density, 1e-4, "density", g);
+  all["rubber's Young's modulus"] = material_number(1, &deck::NeoHookean::youngs_modulus, 1, "youngs_modulus", g);
+  all["rubber's Poisson's ratio"] = material_number(1, &deck::NeoHookean::poisson_ratio, 1e-7, "poisson_ratio", g);
+  check(model, all, steps, observer);
+}
+
+TEST_CASE("a gradient has the same bits whatever memory it is given") {
+  Model model = scene(2, deck::Transfer::apic, water(), sand(), deck::ContactKind::friction);
+  model.time.step = {};
+  model.time.cfl = 0.5;
+  Everything observer({0.01, 0.02, 0.03});
+  const StepSequence steps = record_run(model, observer, {});
+  REQUIRE(steps.dt.size() > 30);
+  const ModelGradient whole = gradient_of(model, steps, observer, steps.dt.size());
+  for (const std::size_t snapshots : {2, 3, 5, 11}) {
+    const ModelGradient part = gradient_of(model, steps, observer, snapshots);
+    CHECK(part.gravity == whole.gravity);
+    CHECK(part.coefficient == whole.coefficient);
+    CHECK(part.bodies[0].material == whole.bodies[0].material);
+    CHECK(part.bodies[0].initial.velocity == whole.bodies[0].initial.velocity);
+    CHECK(part.bodies[1].initial.stress == whole.bodies[1].initial.stress);
+  }
+}
+
+TEST_CASE("the schedule of snapshots costs as little as any") {
+  // Fewest forward steps by dynamic programming: F(n, s) = min over m of m + F(n − m, s − 1) + F(m, s), F(1, s) = 0.
+  constexpr std::size_t most_steps = 60, most_free = 8;
+  double F[most_steps + 1][most_free + 1];
+  for (std::size_t s = 0; s <= most_free; ++s)
+    for (std::size_t n = 1; n <= most_steps; ++n) {
+      F[n][s] = n == 1 ? 0 : 1e9;
+      for (std::size_t m = 1; s > 0 && m < n; ++m) F[n][s] = std::min(F[n][s], double(m) + F[n - m][s - 1] + F[m][s]);
+    }
+  for (std::size_t free = 1; free <= most_free; ++free)
+    for (std::size_t steps = 2; steps <= most_steps; ++steps) {
+      INFO(steps << " steps, " << free + 1 << " snapshots");
+      CHECK(recomputed_steps(steps, free + 1) == F[steps][free] + 1 - double(steps));
+    }
+}
