@@ -140,3 +140,28 @@ TEST_CASE("the fast step matches the reference step for every material and wall"
   check_step(busy_scene(dim, method, water(), rubber(), kind), 1e-4);
   check_step(busy_scene(dim, method, sand(), elastic(), kind), 1e-4);
 }
+
+TEST_CASE("a slope that meets a face of the domain does not push material out of it") {
+  for (const auto kind : {deck::ContactKind::slip, deck::ContactKind::separate, deck::ContactKind::friction}) {
+    deck::Method method;
+    method.precision = deck::Precision::f32;
+    Model model = busy_scene(2, method, sand(), sand(), deck::ContactKind::slip);
+    model.bodies.resize(1);
+    model.gravity = {0, -90, 0};
+    model.bodies[0] = jittered_body("stream", sand(), 2, {21.5, 8, 0}, {24, 9, 0}, model.cell_size, 0, 0, 0);
+    BodyState& stream = model.bodies[0].initial;
+    for (std::size_t p = 0; p < stream.id.size(); ++p) {
+      stream.velocity[p] = {0.5, -2, 0};
+      if (p % 5 == 0) stream.position[p][0] = model.cells[0] - 1e-6;  // some of it touches the face already
+    }
+    const Point through{18, 9, 0}, normal{0.28, 0.96, 0};  // falls towards x_max
+    model.obstacles[0].kind = kind;
+    model.obstacles[0].signed_distance = [=](const Point& x) {
+      return SignedDistance{normal[0] * (x[0] - through[0]) + normal[1] * (x[1] - through[1]), normal};
+    };
+    const auto solver = make_solver(model, Backend::cpu);
+    CHECK_NOTHROW([&] {
+      for (int k = 0; k < 500; ++k) solver->step(1e-4);
+    }());
+  }
+}
