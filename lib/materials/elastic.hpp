@@ -45,6 +45,55 @@ JAXMPM_INLINE Symmetric<Real, Dim> rotate(const Symmetric<Real, Dim>& stress, co
   return rotated;
 }
 
+/// Adjoint of rotate(): `by` is by the rotated stress, then by the stress; adds to by_H.
+template <class Real, int Dim>
+JAXMPM_INLINE void rotate_adjoint(const Symmetric<Real, Dim>& stress, const Matrix<Real, Dim>& H, Symmetric<Real, Dim>& by,
+                                  Matrix<Real, Dim>& by_H) {
+  Matrix<Real, Dim> S, E, sum, ES, by_E, by_ES, by_S;
+  Real a2 = Real(0);
+  for (int i = 0; i < Dim; ++i)
+    for (int j = 0; j < Dim; ++j) S(i, j) = Real(0.25) * (H(i, j) - H(j, i));
+  for (int i = 0; i < Dim; ++i)
+    for (int j = 0; j < i; ++j) a2 = a2 + S(i, j) * S(i, j);
+  const Real scale = Real(2) / (Real(1) + a2);
+  for (int i = 0; i < Dim; ++i)
+    for (int j = 0; j < Dim; ++j) {
+      sum(i, j) = S(i, j);
+      for (int k = 0; k < Dim; ++k) sum(i, j) = sum(i, j) + S(i, k) * S(k, j);
+      E(i, j) = scale * sum(i, j);
+      by_E(i, j) = by_ES(i, j) = by_S(i, j) = Real(0);
+    }
+  for (int i = 0; i < Dim; ++i)
+    for (int j = 0; j < Dim; ++j) {
+      ES(i, j) = Real(0);
+      for (int k = 0; k < Dim; ++k) ES(i, j) = ES(i, j) + E(i, k) * stress(k, j);
+    }
+  for (int i = 0; i < Dim; ++i)  // rotated = σ + ES + (ES)ᵀ + ES Eᵀ
+    for (int j = 0; j <= i; ++j) {
+      const Real b = by[Symmetric<Real, Dim>::index(i, j)];
+      by_ES(i, j) = by_ES(i, j) + b, by_ES(j, i) = by_ES(j, i) + b;
+      for (int k = 0; k < Dim; ++k) by_ES(i, k) = by_ES(i, k) + b * E(j, k), by_E(j, k) = by_E(j, k) + b * ES(i, k);
+    }
+  for (int i = 0; i < Dim; ++i)
+    for (int j = 0; j < Dim; ++j)
+      for (int k = 0; k < Dim; ++k) {
+        const int at = Symmetric<Real, Dim>::index(k, j);
+        by_E(i, k) = by_E(i, k) + by_ES(i, j) * stress(k, j), by[at] = by[at] + by_ES(i, j) * E(i, k);
+      }
+  Real by_scale = Real(0);
+  for (int k = 0; k < Dim * Dim; ++k) by_scale = by_scale + by_E.a[k] * sum.a[k];
+  const Real by_a2 = Real(-0.5) * by_scale * scale * scale;
+  for (int i = 0; i < Dim; ++i)
+    for (int j = 0; j < Dim; ++j) {
+      const Real b = scale * by_E(i, j);
+      by_S(i, j) = by_S(i, j) + b;
+      if (j < i) by_S(i, j) = by_S(i, j) + Real(2) * by_a2 * S(i, j);
+      for (int k = 0; k < Dim; ++k) by_S(i, k) = by_S(i, k) + b * S(k, j), by_S(k, j) = by_S(k, j) + b * S(i, k);
+    }
+  for (int i = 0; i < Dim; ++i)
+    for (int j = 0; j < Dim; ++j) by_H(i, j) = by_H(i, j) + Real(0.25) * (by_S(i, j) - by_S(j, i));
+}
+
 /// Bulk modulus K and shear modulus G, Pa.
 template <class Scalar>
 struct IsotropicElasticity {
@@ -60,6 +109,24 @@ struct IsotropicElasticity {
     for (int k = 0; k < trial.size; ++k) trial[k] = trial[k] + Real(2) * Real(shear) * shape[k];
     for (int k = 0; k < 3; ++k) trial[k] = trial[k] + pressure;
     return trial;
+  }
+
+  /// Adjoint of trial_stress(): `by` is by its result, then by the stress; adds to by_H and to the derivatives by K and G.
+  template <class Real, int Dim>
+  JAXMPM_INLINE void trial_stress_adjoint(const Symmetric<Real, Dim>& stress, const Matrix<Real, Dim>& H, Symmetric<Real, Dim>& by,
+                                          Matrix<Real, Dim>& by_H, Real& by_bulk, Real& by_shear) const {
+    const Symmetric<Real, Dim> strain = symmetric_part(H), shape = deviator(strain);
+    const Real by_pressure = trace(by);
+    by_bulk = by_bulk + by_pressure * trace(strain);
+    Symmetric<Real, Dim> by_shape;
+    for (int k = 0; k < by.size; ++k) {
+      by_shear = by_shear + Real(2) * shape[k] * by[k];
+      by_shape[k] = Real(2) * Real(shear) * by[k];
+    }
+    Symmetric<Real, Dim> by_strain = deviator_adjoint(by_shape);
+    for (int k = 0; k < 3; ++k) by_strain[k] = by_strain[k] + Real(bulk) * by_pressure;
+    symmetric_part_adjoint(by_strain, by_H);
+    rotate_adjoint(stress, H, by, by_H);
   }
 
   /// σ : C⁻¹ : σ / 2 = J2/(2G) + σ_m²/(2K), J/m³.
@@ -88,6 +155,11 @@ struct RateElastic {
   template <class Real, int Dim>
   JAXMPM_INLINE Symmetric<Real, Dim> stress(Real, const Real* history) const {
     return read_symmetric<Real, Dim>(history);
+  }
+  static constexpr bool by_hand = true;
+  template <class Real, int Dim>
+  JAXMPM_INLINE void stress_adjoint(Real, const Real*, const Symmetric<Real, Dim>& by_sigma, Real&, Real* by_history, Real*) const {
+    for (int k = 0; k < by_sigma.size; ++k) by_history[k] = by_history[k] + by_sigma[k];
   }
   template <class Real, int Dim>
   JAXMPM_INLINE Real wave_speed(Real compression, const Real*) const {

@@ -34,6 +34,18 @@ struct LinearElastic : RateElastic<Scalar> {
   }
 
   template <class Real, int Dim>
+  JAXMPM_INLINE auto update_adjoint(const Matrix<Real, Dim>& H, Real, Real compression, const Real* history, Real& by_compression,
+                                    Real* by_history, Matrix<Real, Dim>& by_H, Real* by_constants) const {
+    const Real by_theta = compress_adjoint(compression, trace(H), by_compression);
+    for (int i = 0; i < Dim; ++i)
+      for (int j = 0; j < Dim; ++j) by_H(i, j) = i == j ? by_theta : Real(0);
+    Symmetric<Real, Dim> by = read_symmetric<Real, Dim>(by_history);
+    this->elasticity.trial_stress_adjoint(read_symmetric<Real, Dim>(history), H, by, by_H, by_constants[1], by_constants[2]);
+    write_symmetric(by, by_history);
+    return Real(0) > Real(1);  // no branches
+  }
+
+  template <class Real, int Dim>
   JAXMPM_INLINE void start(const Symmetric<Real, Dim>& stress, Real, Real* history) const {
     write_symmetric(stress, history);
   }

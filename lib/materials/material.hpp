@@ -27,6 +27,15 @@
 //     Scalar diffusivity() const;
 //     /// Strain energy per unit of current volume, J/m³.
 //     template <class Real, int Dim> Real energy(Real compression, const Real* history) const;
+//     /// Optional, where `static constexpr bool by_hand = true` (else core/tape.hpp differentiates): adjoints of update() and stress(),
+//     from the
+//     /// state at the start. by_compression and by_history are by the end values before and by the start values after; by_H is written,
+//     /// by_constants added to (order of constants()); the result tells where a branch hangs on round-off. stress_adjoint() adds to all.
+//     Tests compare them with the tape. template <class Real, int Dim> Condition update_adjoint(const Matrix<Real, Dim>& H, Real dt, Real
+//     compression, const Real* history,
+//         Real& by_compression, Real* by_history, Matrix<Real, Dim>& by_H, Real* by_constants) const;
+//     template <class Real, int Dim> void stress_adjoint(Real compression, const Real* history, const Symmetric<Real, Dim>& by_sigma,
+//         Real& by_compression, Real* by_history, Real* by_constants) const;
 //     /// History of a particle that starts with a given Cauchy stress (initial_stress) and compression.
 //     template <class Real, int Dim> void start(const Symmetric<Real, Dim>& stress, Real compression, Real* history) const;
 //   };
@@ -88,6 +97,40 @@ JAXMPM_INLINE Real half_square(const Symmetric<Real, Dim>& s) {
 template <class Real>
 JAXMPM_INLINE Real compress(Real e, Real theta) {
   return (e - theta) / (Real(1) + theta);
+}
+
+/// Whether a branch that compares two numbers hangs on round-off; infinite ones never do.
+template <class Real>
+JAXMPM_INLINE auto at_kink(Real a, Real b) {
+  const Real distance = abs(a - b);
+  return (distance <= Real(1e-12) * max(abs(a), abs(b))) & (distance < Real(1e30));
+}
+
+/// Adjoint of compress(): `by` is by its result, then by e; returns the derivative by θ.
+template <class Real>
+JAXMPM_INLINE Real compress_adjoint(Real e, Real theta, Real& by) {
+  const Real inverse = Real(1) / (Real(1) + theta);
+  by = by * inverse;
+  return -by * (Real(1) + e) * inverse;
+}
+
+/// Adjoint of deviator(): its own transpose, as the zz component is one like the others.
+template <class Real, int Dim>
+JAXMPM_INLINE Symmetric<Real, Dim> deviator_adjoint(const Symmetric<Real, Dim>& by) {
+  return deviator(by);
+}
+
+/// Adjoint of symmetric_part(): adds to the derivatives by the matrix.
+template <class Real, int Dim>
+JAXMPM_INLINE void symmetric_part_adjoint(const Symmetric<Real, Dim>& by, Matrix<Real, Dim>& by_m) {
+  for (int i = 0; i < Dim; ++i)
+    for (int j = 0; j < Dim; ++j) by_m(i, j) = by_m(i, j) + (i == j ? Real(1) : Real(0.5)) * by[Symmetric<Real, Dim>::index(i, j)];
+}
+
+/// Adjoint of half_square(): Σ by · ∂/∂s.
+template <class Real, int Dim>
+JAXMPM_INLINE void half_square_adjoint(const Symmetric<Real, Dim>& s, Real by, Symmetric<Real, Dim>& by_s) {
+  for (int k = 0; k < s.size; ++k) by_s[k] = by_s[k] + (k < 3 ? Real(1) : Real(2)) * by * s[k];
 }
 
 /// x − log(1 + x) = x²/2 − x³/3 + … without cancellation: by its series below |x| = 0.03, where nine terms leave less than 1e-14.

@@ -29,6 +29,8 @@ struct NeoHookean {
   Scalar density;      // ρ0, kg/m³
   Scalar lame, shear;  // λ and μ, Pa
 
+  static constexpr bool by_hand = false;
+
   template <class Number = DeckNumber>
   static NeoHookean from(const deck::NeoHookean& m, const Number& number = {}) {
     const auto moduli = elastic_moduli(m, number);

@@ -17,6 +17,8 @@ struct WeaklyCompressible {
   Scalar sound_speed;          // c, m/s: at least ten times the largest velocity
   Scalar minimum_compression;  // e below which pressure, and the density with it, is cut: −limit/(ρ0 c²); −∞ without a tension limit
 
+  static constexpr bool by_hand = true;
+
   template <class Number = DeckNumber>
   static WeaklyCompressible from(const deck::Newtonian& m, const Number& number = {}) {
     using Exact = decltype(number(m.density));
@@ -47,6 +49,27 @@ struct WeaklyCompressible {
   template <class Real, int Dim>
   JAXMPM_INLINE void advance(const Matrix<Real, Dim>& H, Real& compression) const {
     compression = max(compress(compression, trace(H)), Real(minimum_compression));
+  }
+
+  template <class Real, int Dim>
+  JAXMPM_INLINE auto advance_adjoint(const Matrix<Real, Dim>& H, Real e, Real& by_compression, Matrix<Real, Dim>& by_H,
+                                     Real* by_constants) const {
+    const Real theta = trace(H), least = Real(minimum_compression);
+    const Real free = compress(e, theta), by_free = select(free > least, by_compression, Real(0));
+    by_constants[2] = by_constants[2] + (by_compression - by_free);
+    by_compression = by_free;
+    const Real by_theta = compress_adjoint(e, theta, by_compression);
+    for (int k = 0; k < Dim * Dim; ++k) by_H.a[k] = Real(0);
+    for (int k = 0; k < Dim; ++k) by_H(k, k) = by_theta;
+    return at_kink(free, least);
+  }
+
+  template <class Real, int Dim>
+  JAXMPM_INLINE void pressure_adjoint(Real e, const Symmetric<Real, Dim>& by_sigma, Real& by_compression, Real* by_constants) const {
+    const Real by_pressure = -trace(by_sigma), c(sound_speed), rho(density);
+    by_compression = by_compression + Real(bulk()) * by_pressure;
+    by_constants[0] = by_constants[0] + c * c * e * by_pressure;
+    by_constants[1] = by_constants[1] + Real(2) * rho * c * e * by_pressure;
   }
 
   template <class Real, int Dim>
@@ -84,6 +107,17 @@ struct InviscidFluid : WeaklyCompressible<Scalar> {
     Symmetric<Real, Dim> sigma{};
     this->add_pressure(compression, sigma);
     return sigma;
+  }
+
+  template <class Real, int Dim>
+  JAXMPM_INLINE auto update_adjoint(const Matrix<Real, Dim>& H, Real, Real compression, const Real*, Real& by_compression, Real*,
+                                    Matrix<Real, Dim>& by_H, Real* by_constants) const {
+    return this->advance_adjoint(H, compression, by_compression, by_H, by_constants);
+  }
+  template <class Real, int Dim>
+  JAXMPM_INLINE void stress_adjoint(Real compression, const Real*, const Symmetric<Real, Dim>& by_sigma, Real& by_compression, Real*,
+                                    Real* by_constants) const {
+    this->pressure_adjoint(compression, by_sigma, by_compression, by_constants);
   }
 
   JAXMPM_INLINE Scalar diffusivity() const { return Scalar(0); }
@@ -126,6 +160,30 @@ struct ViscousFluid : WeaklyCompressible<Scalar> {
     Symmetric<Real, Dim> sigma = read_symmetric<Real, Dim>(history);
     this->add_pressure(compression, sigma);
     return sigma;
+  }
+
+  template <class Real, int Dim>
+  JAXMPM_INLINE auto update_adjoint(const Matrix<Real, Dim>& H, Real dt, Real compression, const Real*, Real& by_compression,
+                                    Real* by_history, Matrix<Real, Dim>& by_H, Real* by_constants) const {
+    const auto kink = this->advance_adjoint(H, compression, by_compression, by_H, by_constants);
+    const Real per_strain = Real(2) * Real(viscosity) / dt;
+    const Symmetric<Real, Dim> shape = deviator(symmetric_part(H));
+    Symmetric<Real, Dim> by_shape;
+    Real work = Real(0);
+    for (int k = 0; k < shape.size; ++k) {
+      work = work + shape[k] * by_history[k];
+      by_shape[k] = per_strain * by_history[k];
+      by_history[k] = Real(0);  // the stress of the step before is forgotten
+    }
+    by_constants[3] = by_constants[3] + Real(2) / dt * work;
+    symmetric_part_adjoint(deviator_adjoint(by_shape), by_H);
+    return kink;
+  }
+  template <class Real, int Dim>
+  JAXMPM_INLINE void stress_adjoint(Real compression, const Real*, const Symmetric<Real, Dim>& by_sigma, Real& by_compression,
+                                    Real* by_history, Real* by_constants) const {
+    for (int k = 0; k < by_sigma.size; ++k) by_history[k] = by_history[k] + by_sigma[k];
+    this->pressure_adjoint(compression, by_sigma, by_compression, by_constants);
   }
 
   /// 4μ/(3ρ0): the damping of a plane pressure wave, the fastest that 2μ dev d causes.

@@ -1,5 +1,5 @@
 #pragma once
-// The adjoint of any law (lib/materials) by a tape of its own update (core/tape.hpp).
+// The adjoint of any law (lib/materials): by hand where it has one, else by a tape of its own update (core/tape.hpp).
 #include "core/tape.hpp"
 #include "kernels/adjoint/material_adjoint.hpp"
 #include "kernels/stencil.hpp"
@@ -50,6 +50,11 @@ class LawAdjoint final : public MaterialAdjoint<T, Dim> {
 
   void update(const Particles<T, Dim>& p, std::size_t s, int count, const T H[][W], T dt, Particles<T, Dim>& bar, T by_H[][W],
               MaterialReport& report) const override {
+    if constexpr (Law<T>::by_hand) update_by_hand(p, s, count, H, dt, bar, by_H, report);
+    else update_by_tape(p, s, count, H, dt, bar, by_H, report);
+  }
+  void update_by_tape(const Particles<T, Dim>& p, std::size_t s, int count, const T H[][W], T dt, Particles<T, Dim>& bar, T by_H[][W],
+                      MaterialReport& report) const {
     Tape<P>& tape = Real::tape();
     tape.clear();
     const Inputs start(p, s, count);
@@ -71,6 +76,11 @@ class LawAdjoint final : public MaterialAdjoint<T, Dim> {
 
   void stress(const Particles<T, Dim>& p, std::size_t s, int count, const T by_sigma[][W], Particles<T, Dim>& bar,
               MaterialReport& report) const override {
+    if constexpr (Law<T>::by_hand) stress_by_hand(p, s, count, by_sigma, bar, report);
+    else stress_by_tape(p, s, count, by_sigma, bar, report);
+  }
+  void stress_by_tape(const Particles<T, Dim>& p, std::size_t s, int count, const T by_sigma[][W], Particles<T, Dim>& bar,
+                      MaterialReport& report) const {
     Tape<P>& tape = Real::tape();
     tape.clear();
     const Inputs start(p, s, count);
@@ -99,6 +109,43 @@ class LawAdjoint final : public MaterialAdjoint<T, Dim> {
   }
 
  private:
+  /// Values of `count` particles, and the derivatives by them (zero in the lanes behind).
+  struct Batch {
+    P e, h[slots], by_e, by_h[slots], by_constants[constants];
+    Batch(const Particles<T, Dim>& p, const Particles<T, Dim>& bar, std::size_t s, int count) {
+      e = load(p.compression.data() + s, count), by_e = seed(bar.compression, s, count);
+      for (int k = 0; k < history; ++k) {
+        h[k] = load(p.history[std::size_t(k)].data() + s, count);
+        by_h[k] = seed(bar.history[std::size_t(k)], s, count);
+      }
+      for (P& c : by_constants) c = P(T(0));
+    }
+    void store_to(Particles<T, Dim>& bar, std::size_t s, int count, MaterialReport& report) const {
+      jaxmpm::store(bar.compression.data() + s, by_e, count);
+      for (int k = 0; k < history; ++k) jaxmpm::store(bar.history[std::size_t(k)].data() + s, by_h[k], count);
+      for (int k = 0; k < constants; ++k)
+        for (int l = 0; l < count; ++l) report.constants[std::size_t(k)] += double(by_constants[k][l]);
+    }
+  };
+  void update_by_hand(const Particles<T, Dim>& p, std::size_t s, int count, const T H[][W], T dt, Particles<T, Dim>& bar, T by_H[][W],
+                      MaterialReport& report) const {
+    Batch b(p, bar, s, count);
+    Matrix<P, Dim> increment, by_increment;
+    for (int k = 0; k < Dim * Dim; ++k) increment.a[k] = P::load(H[k]);
+    const auto kink = law_.template update_adjoint<P, Dim>(increment, P(dt), b.e, b.h, b.by_e, b.by_h, by_increment, b.by_constants);
+    for (int l = 0; l < count; ++l) report.at_kinks += kink.m[l] != 0;
+    for (int k = 0; k < Dim * Dim; ++k) by_increment.a[k].store(by_H[k]);
+    b.store_to(bar, s, count, report);
+  }
+  void stress_by_hand(const Particles<T, Dim>& p, std::size_t s, int count, const T by_sigma[][W], Particles<T, Dim>& bar,
+                      MaterialReport& report) const {
+    Batch b(p, bar, s, count);
+    Symmetric<P, Dim> by;
+    for (int k = 0; k < by.size; ++k) by[k] = P::load(by_sigma[k]);
+    law_.template stress_adjoint<P, Dim>(b.e, b.h, by, b.by_e, b.by_h, b.by_constants);
+    b.store_to(bar, s, count, report);
+  }
+
   void start_batch(const Particles<T, Dim>& p, std::size_t s, int count, const Particles<T, Dim>& bar, double* by_compression,
                    double* by_stress, MaterialReport& report) const {
     P h[slots];
