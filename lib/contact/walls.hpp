@@ -35,6 +35,11 @@ struct Walls {
   JAXMPM_FUNCTION T friction(int face, const std::array<int, Dim>& node) const { return coefficient[segment(face, node)]; }
   /// Whether a node is a ghost, a twin or on a face along some axis: everywhere else the update is plain division.
   JAXMPM_FUNCTION bool near_face(int axis, int node) const { return node <= 1 || node >= cells[std::size_t(axis)] - 1; }
+  JAXMPM_FUNCTION bool near_face(const std::array<int, Dim>& node) const {
+    for (int d = 0; d < Dim; ++d)
+      if (near_face(d, node[std::size_t(d)])) return true;
+    return false;
+  }
 };
 
 /// The segments of all faces of a model.

@@ -26,10 +26,16 @@ void GridAdjoint<T, Dim>::update(const Blocks<Dim>& blocks, const T* arenas, dou
     T* own = own_.data() + b * own_size;
     kernels_.sum(blocks, b, arenas, own);
     block_[b].clear(segments(), model_.obstacles.size());
-    if (contact.wall_slot()[b] >= 0) return wall_block_adjoint(blocks, b, constants);
-    if (contact.obstacles(b)) obstacles_adjoint(b, constants);
+    const bool at_wall = contact.wall_slot()[b] >= 0;
+    const std::vector<NearFace> near_face = at_wall ? wall_block_adjoint(blocks, b, constants) : std::vector<NearFace>{};
+    if (contact.obstacles(b)) obstacles_adjoint(blocks, b, constants);
     const V by_pull = adjoint_.update_nodes(forward_.sums(b), constants.mass_cut_off, own);
     for (int c = 0; c < Dim; ++c) block_[b].gravity[std::size_t(c)] = double(by_pull[c]);
+    for (const NearFace& node : near_face) {
+      T* by_sums = own + 4 * node.own;
+      by_sums[0] = node.direct.mass;
+      for (int c = 0; c < Dim; ++c) by_sums[1 + c] = node.direct.momentum[c];
+    }
   });
   parallel_for_host("jaxmpm::walls_adjoint", contact.wall_blocks().size(),
                     [&](std::size_t w) { collect_wall_block(blocks, contact.wall_blocks()[w], constants); });
@@ -57,9 +63,11 @@ void GridAdjoint<T, Dim>::obstacle_chain(std::size_t block, int own, const V& st
   }
 }
 
-/// Adjoint of push_node for the nodes of a block away from walls.
+/// Adjoint of push_node for the nodes of a block that no wall is near.
 template <class T, int Dim>
-void GridAdjoint<T, Dim>::obstacles_adjoint(std::size_t b, const GridConstants<T, Dim>& constants) {
+void GridAdjoint<T, Dim>::obstacles_adjoint(const Blocks<Dim>& blocks, std::size_t b, const GridConstants<T, Dim>& constants) {
+  const Node first = first_node<Dim>(blocks.index[b]);
+  const bool at_wall = forward_.contact_blocks().wall_slot()[b] >= 0;
   const bool flip = kernels_.planes == 2;
   const T* sums = forward_.sums(b);
   T* bars = own_.data() + b * kernels_.own_size;
@@ -68,6 +76,7 @@ void GridAdjoint<T, Dim>::obstacles_adjoint(std::size_t b, const GridConstants<T
     const T* sum = sums + 4 * node.node;
     if (done[node.node] || !(sum[0] > constants.mass_cut_off)) continue;
     done[node.node] = true;
+    if (at_wall && forward_.walls().near_face(node_of<Dim>(first, int(node.node)))) continue;
     T* by_v = bars + 4 * node.node + 1;
     const T* by_change = bars + cells * 4 + 4 * node.node + 1;
     V start, bar;
@@ -87,9 +96,11 @@ int GridAdjoint<T, Dim>::halo_node(const Node& node, const Node& first) {
   return at;
 }
 
-/// Adjoint of update_wall_block: derivatives by the node sums around the block go to its halo, what FLIP divides itself stays in own_.
+/// Adjoint of update_wall_block: takes the derivatives by the velocities of nodes near faces out of own_ and passes them to the node sums
+/// around the block, in its halo. What does not pass through the velocity, FLIP's own division, is returned.
 template <class T, int Dim>
-void GridAdjoint<T, Dim>::wall_block_adjoint(const Blocks<Dim>& blocks, std::size_t b, const GridConstants<T, Dim>& constants) {
+auto GridAdjoint<T, Dim>::wall_block_adjoint(const Blocks<Dim>& blocks, std::size_t b, const GridConstants<T, Dim>& constants)
+    -> std::vector<NearFace> {
   const Node first = first_node<Dim>(blocks.index[b]);
   const int* neighbours = blocks.neighbour.data() + b * around;
   const WallSums<T, Dim> raw = forward_.wall_sums(blocks, b, constants);
@@ -108,35 +119,35 @@ void GridAdjoint<T, Dim>::wall_block_adjoint(const Blocks<Dim>& blocks, std::siz
   const auto add_coefficient = [&](int segment, T by) { block_[b].segment[std::size_t(segment)] += double(by); };
   const WallAdjoint<T, Dim, WallSums<T, Dim>, decltype(no_obstacles), decltype(obstacles), decltype(add), decltype(add_coefficient)> walls(
       forward_.walls(), raw, no_obstacles, constants.mass_cut_off, obstacles, add, add_coefficient);
-  const T* bars = own_.data() + b * kernels_.own_size;
+  T* bars = own_.data() + b * kernels_.own_size;
+  std::vector<NearFace> near_face;
   for (int own = 0; own < cells; ++own) {
     const Node node = node_of<Dim>(first, own);
-    if (!standing<T, Dim>(forward_.walls(), node).reached) continue;
+    if (!forward_.walls().near_face(node)) continue;
     V bar;
-    const bool moves = forward_.sums(b)[4 * own] > constants.mass_cut_off;  // else Δv is zero whatever v is
-    for (int c = 0; c < Dim; ++c)
-      bar[c] = bars[4 * own + 1 + c] + (kernels_.planes == 2 && moves ? bars[cells * 4 + 4 * own + 1 + c] : T(0));
-    walls.velocity(node, bar);
+    near_face.push_back({own, take_out(forward_.sums(b), constants.mass_cut_off, own, bars, bar)});
+    if (standing<T, Dim>(forward_.walls(), node).reached) walls.velocity(node, bar);
   }
-  own_division_adjoint(b);
+  return near_face;
 }
 
-/// FLIP's Δv = v − p/m with the node's own sums: what of it does not pass through v. Leaves {m̄, p̄} and no impulse in own_.
+/// Takes the derivatives of one node out of own_: those by its velocity, FLIP's Δv = v − p/m included, go to `bar`; those by its own sums
+/// in that division are returned.
 template <class T, int Dim>
-void GridAdjoint<T, Dim>::own_division_adjoint(std::size_t b) {
-  T* bars = own_.data() + b * kernels_.own_size;
-  const T *sums = forward_.sums(b), cut_off = forward_.constants(0).mass_cut_off;
-  for (int own = 0; own < cells; ++own) {
-    T* by_sums = bars + 4 * own;
-    const T* sum = sums + 4 * own;
-    for (int c = 0; c < 4; ++c) by_sums[c] = T(0);
+auto GridAdjoint<T, Dim>::take_out(const T* sums, T cut_off, int own, T* bars, V& bar) const -> Sum {
+  Sum direct{};
+  T *by_v = bars + 4 * own + 1, *by_change = by_v + cells * 4;
+  const T* sum = sums + 4 * own;
+  for (int c = 0; c < Dim; ++c) {
+    bar[c] = by_v[c], by_v[c] = T(0);
     if (kernels_.planes == 1) continue;
-    T* by_change = by_sums + cells * 4;
-    for (int c = 1; c <= Dim; ++c) {
-      if (sum[0] > cut_off) by_sums[c] = -by_change[c] / sum[0], by_sums[0] += by_change[c] * sum[c] / (sum[0] * sum[0]);
-      by_change[c] = T(0);
+    if (sum[0] > cut_off) {  // else Δv is zero whatever v is
+      bar[c] += by_change[c];
+      direct.momentum[c] = -by_change[c] / sum[0], direct.mass += by_change[c] * sum[1 + c] / (sum[0] * sum[0]);
     }
+    by_change[c] = T(0);
   }
+  return direct;
 }
 
 /// Adds the halos that reach a wall block, in the order of neighbours: P = p + impulse + m Δt g.

@@ -42,10 +42,16 @@ class GridAdjoint {
   };
 
   std::size_t segments() const { return forward_.contact_blocks().table().coefficient.size(); }
-  void obstacles_adjoint(std::size_t b, const GridConstants<T, Dim>& constants);
-  void wall_block_adjoint(const Blocks<Dim>& blocks, std::size_t b, const GridConstants<T, Dim>& constants);
+  /// A node near a face, and derivatives by its own sums that do not pass through its velocity.
+  struct NearFace {
+    int own;
+    Sum direct;
+  };
+
+  void obstacles_adjoint(const Blocks<Dim>& blocks, std::size_t b, const GridConstants<T, Dim>& constants);
+  Sum take_out(const T* sums, T cut_off, int own, T* bars, V& bar) const;
+  std::vector<NearFace> wall_block_adjoint(const Blocks<Dim>& blocks, std::size_t b, const GridConstants<T, Dim>& constants);
   void collect_wall_block(const Blocks<Dim>& blocks, std::size_t b, const GridConstants<T, Dim>& constants);
-  void own_division_adjoint(std::size_t b);
   void obstacle_chain(std::size_t block, int own, const V& start, V& bar, GridBars& bars) const;
   static int halo_node(const Node& node, const Node& first);
 

@@ -58,13 +58,14 @@ void GridUpdate<T, Dim>::update(const Blocks<Dim>& blocks, const T* arenas, doub
 template <class T, int Dim>
 void GridUpdate<T, Dim>::update_block(const Blocks<Dim>& blocks, std::size_t b, const T* arenas, const GridConstants<T, Dim>& constants) {
   if (recording_) contact_[b] = {}, contact_[b].obstacle.resize(model_.obstacles.size());
-  const int wall_slot = contact_blocks_.wall_slot()[b];
-  if (wall_slot >= 0) return kernels_.sum(blocks, b, arenas, raw_.data() + std::size_t(wall_slot) * kernels_.own_size);
   T* own = grid_.data() + b * kernels_.own_size;
   kernels_.sum(blocks, b, arenas, own);
-  if (keep_sums_) std::memcpy(sums_.data() + b * kernels_.own_size, own, sizeof(T) * kernels_.own_size);
+  const int wall_slot = contact_blocks_.wall_slot()[b];
+  if (T* kept = wall_slot >= 0 ? raw_.data() + std::size_t(wall_slot) * kernels_.own_size
+                               : (keep_sums_ ? sums_.data() + b * kernels_.own_size : nullptr))
+    std::memcpy(kept, own, sizeof(T) * kernels_.own_size);
   kernels_.update_nodes(own, constants);
-  if (contact_blocks_.obstacles(b)) apply_obstacles(b);
+  if (contact_blocks_.obstacles(b)) apply_obstacles(blocks, b);
 }
 
 template <class T, int Dim>
@@ -74,9 +75,12 @@ void GridUpdate<T, Dim>::record(std::size_t b, std::uint32_t obstacle, const Obs
 }
 
 template <class T, int Dim>
-void GridUpdate<T, Dim>::apply_obstacles(std::size_t b) {
+void GridUpdate<T, Dim>::apply_obstacles(const Blocks<Dim>& blocks, std::size_t b) {
   T* own = grid_.data() + b * kernels_.own_size;
+  const Node first = first_node<Dim>(blocks.index[b]);
+  const bool at_wall = contact_blocks_.wall_slot()[b] >= 0;
   for (const ObstacleNode<T, Dim>& node : *contact_blocks_.obstacles(b)) {
+    if (at_wall && walls_.near_face(node_of<Dim>(first, int(node.node)))) continue;  // the walls come first there
     const RigidObstacle& obstacle = model_.obstacles[node.obstacle];
     T* quad = own + 4 * node.node;
     const auto done = push_node<T, Dim>(obstacle.kind, T(obstacle.coefficient), node.normal, mass_cut_off_, quad,
@@ -85,6 +89,7 @@ void GridUpdate<T, Dim>::apply_obstacles(std::size_t b) {
   }
 }
 
+/// The nodes of a block that are on a face, or whose images are; the others have their velocities already.
 template <class T, int Dim>
 void GridUpdate<T, Dim>::update_wall_block(const Blocks<Dim>& blocks, std::size_t b, const GridConstants<T, Dim>& constants) {
   const int* neighbours = blocks.neighbour.data() + b * around;
@@ -105,6 +110,7 @@ void GridUpdate<T, Dim>::update_wall_block(const Blocks<Dim>& blocks, std::size_
   T* out = grid_.data() + b * kernels_.own_size;
   for (int own = 0; own < cells; ++own) {
     const Node node = node_of<Dim>(first, own);
+    if (!walls_.near_face(node)) continue;
     const NodeStanding at = standing<T, Dim>(walls_, node);
     inside = at.inside;
     NodeContact<T, Dim> contact;

@@ -48,7 +48,7 @@ class GridUpdate {
 
   void update_block(const Blocks<Dim>& blocks, std::size_t b, const T* arenas, const GridConstants<T, Dim>& constants);
   void update_wall_block(const Blocks<Dim>& blocks, std::size_t b, const GridConstants<T, Dim>& constants);
-  void apply_obstacles(std::size_t b);
+  void apply_obstacles(const Blocks<Dim>& blocks, std::size_t b);
   void record(std::size_t b, std::uint32_t obstacle, const ObstacleContact<T, Dim>& done);
 
   const Model& model_;
