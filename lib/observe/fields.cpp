@@ -69,6 +69,25 @@ double field_value(const OutputField& field, const BodySnapshot& snapshot, std::
   return field.name == "id" ? static_cast<double>(snapshot.id[p]) : static_cast<double>(body);
 }
 
+bool has_derivative(const OutputField& field) { return field.name != "velocity_gradient"; }
+
+double* gradient_of(std::vector<double> BodySnapshot::*field, BodySnapshot& gradient, std::size_t size) {
+  std::vector<double>& values = gradient.*field;
+  if (values.empty()) values.assign(size, 0.0);
+  return values.data();
+}
+
+void add_field_gradient(const OutputField& field, double value, std::size_t p, std::size_t k, std::size_t components, std::size_t particles,
+                        BodySnapshot& gradient) {
+  if (!field.values) return;
+  if (field.values != &BodySnapshot::pressure) {
+    gradient_of(field.values, gradient, particles * components)[p * components + k] += value;
+    return;
+  }
+  double* stress = gradient_of(&BodySnapshot::stress, gradient, 6 * particles);
+  for (std::size_t a = 0; a < 3; ++a) stress[6 * p + a] -= value / 3;
+}
+
 std::vector<std::string> written_fields(const deck::Output& output, const deck::Material& material) {
   if (output.fields) return *output.fields;
   if (std::holds_alternative<deck::Newtonian>(material)) return {"velocity", "pressure"};

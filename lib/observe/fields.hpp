@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "solvers/solver.hpp"
+#include "solvers/model_gradient.hpp"
 
 namespace jaxmpm {
 
@@ -30,6 +30,15 @@ std::vector<std::string> component_names(Rank rank, int dim);
 /// Component k of a field at particle p of a body.
 double field_value(const OutputField& field, const BodySnapshot& snapshot, std::size_t body, std::size_t p, std::size_t k,
                    std::size_t components);
+
+/// Whether readings of a field can be differentiated by the particles of a snapshot: not the velocity gradient, which is the grid's.
+bool has_derivative(const OutputField& field);
+/// A field of a body's gradient for adding to, of `size` numbers; zeros where it was empty.
+double* gradient_of(std::vector<double> BodySnapshot::*field, BodySnapshot& gradient, std::size_t size);
+/// Adds `value`, ∂L/∂(component k of a field at particle p of `particles`), to a body's gradient: pressure is −tr σ/3, body and id are
+/// constant. The field must have a derivative.
+void add_field_gradient(const OutputField& field, double value, std::size_t p, std::size_t k, std::size_t components, std::size_t particles,
+                        BodySnapshot& gradient);
 
 /// Fields written for a body: those of the deck, or by default its velocity and what its material adds.
 std::vector<std::string> written_fields(const deck::Output& output, const deck::Material& material);

@@ -30,29 +30,72 @@ class Front : public Gauge {
   std::vector<Channel> channels() const override { return {{"value", "m", {}, {}}}; }
   FieldSelection needs() const override { return gauge_.depth ? selection({"density"}) : FieldSelection{}; }
   Sample measure(const Scene& scene, const std::vector<double>*) const override {
-    const BodySnapshot& body = scene.bodies[body_];
-    const double sign = gauge_.direction == "-" ? -1 : 1;
-    const std::vector<bool> kept = gauge_.connected ? in_largest_cluster(body, model_) : std::vector<bool>(body.id.size(), true);
-    std::vector<Along> material;
-    material.reserve(body.id.size());
-    for (std::size_t p = 0; p < body.id.size(); ++p)
-      if (kept[p])
-        material.push_back(
-            {sign * coordinate(&body.position[p * model_.dim]), gauge_.depth ? body.mass[p] / body.density[p] : body.mass[p]});
+    const Reach reach = reach_of(scene.bodies[body_]);
+    const double sign = direction();
     Sample sample = gauge_.depth
-                        ? depth_front(material, *gauge_.depth, width_, model_.cell_size, [&](double s) { return breadth(sign * s); })
-                        : quantile_front(material, gauge_.quantile.value_or(0.995), width_, model_.cell_size);
+                        ? depth_front(reach.material, *gauge_.depth, width_, model_.cell_size, [&](double s) { return breadth(sign * s); })
+                        : quantile_front(reach.material, quantile(), width_, model_.cell_size);
     for (double& value : sample.values) value *= sign;
     return sample;
   }
+  void gradient(const Scene& scene, const Sample& reading, const double* by_values, SnapshotGradient& into) const override {
+    const BodySnapshot& body = scene.bodies[body_];
+    const Reach reach = reach_of(body);
+    const double s = direction() * reading.values[0], by_s = direction() * by_values[0];
+    const std::vector<AlongGradient> along =
+        gauge_.depth ? depth_front_gradient(reach.material, s, *gauge_.depth, width_, breadth(reading.values[0]), breadth_slope(s))
+                     : quantile_front_gradient(reach.material, s, quantile(), width_);
+    const std::size_t n = body.id.size();
+    double* by_position = gradient_of(&BodySnapshot::position, into[body_], n * model_.dim);
+    double* by_mass = gradient_of(&BodySnapshot::mass, into[body_], n);
+    double* by_density = gauge_.depth ? gradient_of(&BodySnapshot::density, into[body_], n) : nullptr;
+    for (std::size_t k = 0; k < along.size(); ++k) {
+      const std::size_t p = reach.particle[k];
+      add_coordinate_gradient(&body.position[p * model_.dim], direction() * by_s * along[k].by_s, by_position + p * model_.dim);
+      const double by_amount = by_s * along[k].by_amount;
+      by_mass[p] += gauge_.depth ? by_amount / body.density[p] : by_amount;
+      if (gauge_.depth) by_density[p] -= by_amount * reach.material[k].amount / body.density[p];
+    }
+  }
 
  private:
+  /// The body's material along the coordinate, towards the front, and the particles it belongs to.
+  struct Reach {
+    std::vector<Along> material;
+    std::vector<std::size_t> particle;
+  };
+  Reach reach_of(const BodySnapshot& body) const {
+    const std::vector<bool> kept = gauge_.connected ? in_largest_cluster(body, model_) : std::vector<bool>(body.id.size(), true);
+    Reach reach;
+    reach.material.reserve(body.id.size());
+    reach.particle.reserve(body.id.size());
+    for (std::size_t p = 0; p < body.id.size(); ++p) {
+      if (!kept[p]) continue;
+      reach.material.push_back(
+          {direction() * coordinate(&body.position[p * model_.dim]), gauge_.depth ? body.mass[p] / body.density[p] : body.mass[p]});
+      reach.particle.push_back(p);
+    }
+    return reach;
+  }
+  double direction() const { return gauge_.direction == "-" ? -1 : 1; }
+  double quantile() const { return gauge_.quantile.value_or(0.995); }
+
   double coordinate(const double* x) const {
     if (!radial_) return x[axis_];
     double square = 0;
     for (int a = 0; a < model_.dim; ++a)
       if (a != up_) square += (x[a] - center_[a]) * (x[a] - center_[a]);
     return std::sqrt(square);
+  }
+
+  void add_coordinate_gradient(const double* x, double by_coordinate, double* into) const {
+    if (!radial_) {
+      into[axis_] += by_coordinate;
+      return;
+    }
+    const double radius = coordinate(x);
+    for (int a = 0; a < model_.dim && radius > 0; ++a)
+      if (a != up_) into[a] += by_coordinate * (x[a] - center_[a]) / radius;
   }
 
   /// Horizontal extent across the coordinate: the domain's breadth (1 in 2D), or the part of the circle that lies in the domain.
@@ -63,6 +106,8 @@ class Front : public Gauge {
       if (a != axis_ && a != up_) extent *= high_[a] - model_.domain_min[a];
     return extent;
   }
+  /// Derivative of the breadth by s: an arc grows with its radius.
+  double breadth_slope(double s) const { return radial_ && model_.dim == 3 && s != 0 ? arc(s) / s : 0; }
   double arc(double radius) const {
     constexpr int pieces = 720;
     int inside = 0;

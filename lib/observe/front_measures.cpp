@@ -107,4 +107,34 @@ Sample depth_front(const std::vector<Along>& material, double depth, double widt
   return {true, {bisect(outside - step, outside, [&](double s) { return !deep(s); })}};
 }
 
+std::vector<AlongGradient> quantile_front_gradient(const std::vector<Along>& material, double s, double quantile, double width) {
+  double slope = 0;  // ∂F/∂s
+  for (const Along& p : material) slope += p.amount * spline((s - p.s) / width) / width;
+  std::vector<AlongGradient> gradient(material.size());
+  if (slope <= 0) return gradient;
+  for (std::size_t p = 0; p < material.size(); ++p) {
+    const double r = (s - material[p].s) / width;
+    gradient[p] = {material[p].amount * spline(r) / width / slope, (quantile - spline_step(r)) / slope};
+  }
+  return gradient;
+}
+
+std::vector<AlongGradient> depth_front_gradient(const std::vector<Along>& material, double s, double depth, double width, double breadth,
+                                                double breadth_slope) {
+  constexpr double jump = 1e-6;  // of the depth: more is not the rounding of s
+  double measured = 0, slope = -depth * breadth_slope;
+  for (const Along& p : material) {
+    const double r = (s - p.s) / width;
+    measured += p.amount * spline(r) / width;
+    slope += p.amount * spline_slope(r) / (width * width);
+  }
+  std::vector<AlongGradient> gradient(material.size());
+  if (slope >= 0 || std::abs(measured - depth * breadth) > jump * depth * breadth) return gradient;
+  for (std::size_t p = 0; p < material.size(); ++p) {
+    const double r = (s - material[p].s) / width;
+    gradient[p] = {material[p].amount * spline_slope(r) / (width * width * slope), -spline(r) / (width * slope)};
+  }
+  return gradient;
+}
+
 }  // namespace jaxmpm

@@ -21,6 +21,10 @@ std::size_t GaugeSeries::width() const {
   return sum;
 }
 
+void Gauge::gradient(const Scene&, const Sample&, const double*, SnapshotGradient&) const {
+  throw Error(ExitCode::deck, "a gauge of this kind has no derivative by the particles; observe another.");
+}
+
 GaugeSet::GaugeSet(const deck::Deck& deck, const Model& model) {
   for (const auto& [name, wanted] : deck.gauges) {
     std::unique_ptr<Gauge> gauge;

@@ -45,6 +45,10 @@ class Gauge {
   virtual bool needs_forces() const { return false; }
   /// `first` is the gauge's own first reading, null while there is none.
   virtual Sample measure(const Scene& scene, const std::vector<double>* first) const = 0;
+  /// Adds Σ by_values · ∂values/∂(particles) to `into`, which has the scene's bodies. `reading` is the valid one that measure() gave for
+  /// this scene. Which particles belong to the largest cluster, and what part of a circle lies in the domain, are held fixed. Throws Error
+  /// (exit 2) where the kind of gauge has no derivative: the deck's check lets no observation of it through.
+  virtual void gradient(const Scene& scene, const Sample& reading, const double* by_values, SnapshotGradient& into) const;
 };
 
 /// Readings so far. `values` holds width numbers for each time.

@@ -13,6 +13,10 @@ std::unique_ptr<Gauge> make_gauge(const deck::EnergyGauge& gauge, const Model& m
 std::unique_ptr<Gauge> make_gauge(const deck::MomentumGauge& gauge, const Model& model);
 std::unique_ptr<Gauge> make_gauge(const deck::ParticlesGauge& gauge, const Model& model);
 
+/// Not a gauge of the deck, but what an observation of a deposit's profile reads: the height gauge of one body alone above `at` (horizontal
+/// coordinates, m), which gives the ground where that body is not.
+std::unique_ptr<Gauge> make_deposit_gauge(const deck::Numbers& at, const Model& model, std::size_t body);
+
 /// Upper ends of the domain, m.
 Point domain_max(const Model& model);
 /// The axis that gravity is most nearly along (the last one without gravity), and +1 or −1: the direction along it that is up.

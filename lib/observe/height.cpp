@@ -11,14 +11,17 @@ namespace jaxmpm {
 namespace {
 
 struct ColumnParticle {
-  double height, amount;
-};  // along "up", m; V φ(horizontal) / Δh^(dim−1), m
+  double height, amount;  // along "up", m; V φ(horizontal) / Δh^(dim−1), m
+  std::size_t body, particle;
+};
 
 class Height : public Gauge {
  public:
-  Height(const deck::HeightGauge& gauge, const Model& model)
-      : dim_(model.dim), up_(up_axis(model)), width_(model.cell_size), low_(model.domain_min), high_(domain_max(model)) {
-    for (int a = 0, k = 0; a < dim_; ++a) at_[a] = a == up_.axis ? 0 : gauge.at[k++];
+  /// `deposit`: the one body that counts, and the ground is the reading where it is not; else all bodies do, and the reading is masked
+  /// there.
+  Height(const deck::Numbers& at, const Model& model, std::optional<std::size_t> deposit)
+      : dim_(model.dim), deposit_(deposit), up_(up_axis(model)), width_(model.cell_size), low_(model.domain_min), high_(domain_max(model)) {
+    for (int a = 0, k = 0; a < dim_; ++a) at_[a] = a == up_.axis ? 0 : at[k++];
     const double ends[2] = {up_.sign * low_[up_.axis], up_.sign * high_[up_.axis]};
     top_ = std::max(ends[0], ends[1]);
     ground_ = find_ground(model, std::min(ends[0], ends[1]));
@@ -31,20 +34,51 @@ class Height : public Gauge {
     const auto filled = [&](double u) { return fraction(column, u) >= 0.5; };
     double below = ground_;
     while (below <= ground_ + 1.5 * width_ && !filled(below)) below += step;
-    if (!filled(below)) return {};
+    if (!filled(below)) return deposit_ ? Sample{true, {up_.sign * ground_}} : Sample{};
     while (below + step < top_ && filled(below + step)) below += step;
     return {true, {up_.sign * crossing(filled, below, below + step)}};
   }
+  /// du = −Σ df / f'(u). Zero where the column is empty, or full to the top: no particle moves the surface then.
+  void gradient(const Scene& scene, const Sample& reading, const double* by_values, SnapshotGradient& into) const override {
+    const double u = up_.sign * reading.values[0];
+    const std::vector<ColumnParticle> column = particles_above(scene);
+    if (std::abs(fraction(column, u) - 0.5) > 1e-6) return;
+    double slope = 0;
+    for (const ColumnParticle& p : column) slope += p.amount * mirrored_spline_slope(u, p.height, ground_, top_, width_).by_x / width_;
+    if (slope >= 0) return;
+    for (const ColumnParticle& p : column) {
+      const double by_fraction = -up_.sign * by_values[0] / slope;
+      const double by_height = by_fraction * p.amount * mirrored_spline_slope(u, p.height, ground_, top_, width_).by_xp / width_;
+      const double by_amount = by_fraction * mirrored_spline(u, p.height, ground_, top_, width_) / width_;
+      add_gradient(scene.bodies[p.body], p, up_.sign * by_height, by_amount, into[p.body]);
+    }
+  }
 
  private:
+  bool counts(std::size_t body) const { return !deposit_ || *deposit_ == body; }
+  double across(int a, double x) const { return mirrored_spline(at_[a], x, low_[a], high_[a], width_) / width_; }
+  /// Adds the derivatives of a particle, given those by its coordinate along the up axis and by its amount.
+  void add_gradient(const BodySnapshot& body, const ColumnParticle& p, double by_up, double by_amount, BodySnapshot& into) const {
+    const std::size_t n = body.id.size(), i = p.particle;
+    double* by_position = gradient_of(&BodySnapshot::position, into, n * dim_) + i * dim_;
+    for (int a = 0; a < dim_; ++a) {
+      const double x = body.position[i * dim_ + a];
+      by_position[a] +=
+          a == up_.axis ? by_up
+                        : by_amount * p.amount * mirrored_spline_slope(at_[a], x, low_[a], high_[a], width_).by_xp / width_ / across(a, x);
+    }
+    gradient_of(&BodySnapshot::mass, into, n)[i] += by_amount * p.amount / body.mass[i];
+    gradient_of(&BodySnapshot::density, into, n)[i] -= by_amount * p.amount / body.density[i];
+  }
   std::vector<ColumnParticle> particles_above(const Scene& scene) const {
     std::vector<ColumnParticle> column;
-    for (const BodySnapshot& body : scene.bodies)
-      for (std::size_t p = 0; p < body.id.size(); ++p) {
+    for (std::size_t b = 0; b < scene.bodies.size(); ++b)
+      for (std::size_t p = 0; counts(b) && p < scene.bodies[b].id.size(); ++p) {
+        const BodySnapshot& body = scene.bodies[b];
         double amount = body.mass[p] / body.density[p];
         for (int a = 0; a < dim_ && amount > 0; ++a)
-          if (a != up_.axis) amount *= mirrored_spline(at_[a], body.position[p * dim_ + a], low_[a], high_[a], width_) / width_;
-        if (amount > 0) column.push_back({up_.sign * body.position[p * dim_ + up_.axis], amount});
+          if (a != up_.axis) amount *= across(a, body.position[p * dim_ + a]);
+        if (amount > 0) column.push_back({up_.sign * body.position[p * dim_ + up_.axis], amount, b, p});
       }
     return column;
   }
@@ -72,6 +106,7 @@ class Height : public Gauge {
   }
 
   int dim_;
+  std::optional<std::size_t> deposit_;
   UpAxis up_;
   double width_, top_ = 0, ground_ = 0;  // m; heights count along "up"
   Point low_, high_, at_{};
@@ -79,6 +114,12 @@ class Height : public Gauge {
 
 }  // namespace
 
-std::unique_ptr<Gauge> make_gauge(const deck::HeightGauge& gauge, const Model& model) { return std::make_unique<Height>(gauge, model); }
+std::unique_ptr<Gauge> make_gauge(const deck::HeightGauge& gauge, const Model& model) {
+  return std::make_unique<Height>(gauge.at, model, std::nullopt);
+}
+
+std::unique_ptr<Gauge> make_deposit_gauge(const deck::Numbers& at, const Model& model, std::size_t body) {
+  return std::make_unique<Height>(at, model, body);
+}
 
 }  // namespace jaxmpm

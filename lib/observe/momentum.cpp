@@ -18,6 +18,19 @@ class Momentum : public Gauge {
         for (int a = 0; a < dim_; ++a) sample.values[a] += body.mass[p] * body.velocity[p * dim_ + a];
     return sample;
   }
+  void gradient(const Scene& scene, const Sample&, const double* by_values, SnapshotGradient& into) const override {
+    for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+      const BodySnapshot& body = scene.bodies[b];
+      const std::size_t n = body.mass.size();
+      double* by_mass = gradient_of(&BodySnapshot::mass, into[b], n);
+      double* by_velocity = gradient_of(&BodySnapshot::velocity, into[b], n * dim_);
+      for (std::size_t p = 0; p < n; ++p)
+        for (int a = 0; a < dim_; ++a) {
+          by_mass[p] += by_values[a] * body.velocity[p * dim_ + a];
+          by_velocity[p * dim_ + a] += by_values[a] * body.mass[p];
+        }
+    }
+  }
 
  private:
   int dim_;

@@ -38,6 +38,18 @@ class Particles : public Gauge {
     }
     return sample;
   }
+  void gradient(const Scene& scene, const Sample&, const double* by_values, SnapshotGradient& into) const override {
+    for (const std::string& name : fields_) {
+      const OutputField& field = output_field(name);
+      if (!has_derivative(field)) Gauge::gradient(scene, {}, by_values, into);
+      const std::size_t size = component_count(field.rank, dim_);
+      for (std::size_t b = 0; b < scene.bodies.size(); ++b)
+        for (std::size_t p = 0, n = scene.bodies[b].id.size(); p < n; ++p)
+          if (const auto found = place_.find(scene.bodies[b].id[p]); found != place_.end())
+            for (std::size_t k = 0; k < size; ++k) add_field_gradient(field, by_values[found->second * size + k], p, k, size, n, into[b]);
+      by_values += size * place_.size();
+    }
+  }
 
  private:
   void check(const deck::ParticlesGauge& gauge, const Model& model) const {

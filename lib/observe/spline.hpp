@@ -11,6 +11,13 @@ inline double spline(double r) {
   return r < 1.5 ? 0.5 * (1.5 - r) * (1.5 - r) : 0;
 }
 
+/// Derivative of the weight by r.
+inline double spline_slope(double r) {
+  const double distance = std::abs(r);
+  if (distance < 0.5) return -2 * r;
+  return distance < 1.5 ? std::copysign(1.5 - distance, -r) : 0;
+}
+
 /// Integral of the weight from −∞ to r: a step from 0 to 1 that is smooth over three widths.
 inline double spline_step(double r) {
   if (r <= -1.5) return 0;
@@ -23,6 +30,16 @@ inline double spline_step(double r) {
 /// much beside a wall.
 inline double mirrored_spline(double x, double xp, double low, double high, double width) {
   return spline((x - xp) / width) + spline((x - (2 * low - xp)) / width) + spline((x - (2 * high - xp)) / width);
+}
+
+/// Derivatives of mirrored_spline by x and by xp, 1/m.
+struct MirroredSlope {
+  double by_x, by_xp;
+};
+inline MirroredSlope mirrored_spline_slope(double x, double xp, double low, double high, double width) {
+  const double own = spline_slope((x - xp) / width) / width;
+  const double images = (spline_slope((x - (2 * low - xp)) / width) + spline_slope((x - (2 * high - xp)) / width)) / width;
+  return {images + own, images - own};
 }
 
 }  // namespace jaxmpm
