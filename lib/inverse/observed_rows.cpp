@@ -1,0 +1,69 @@
+#include "inverse/observed_rows.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fields/files.hpp"
+#include "fields/random.hpp"
+#include "scene/frame.hpp"
+
+namespace jaxmpm {
+namespace {
+
+constexpr double same_time = 1e-9;  // relative to the end of the run, and to `every`
+
+void sort_rows(std::vector<ObservedRow>& rows, const ObservationPlace& place) {
+  std::stable_sort(rows.begin(), rows.end(), [](const ObservedRow& a, const ObservedRow& b) {
+    return a.time != b.time ? a.time < b.time : a.subject < b.subject;
+  });
+  for (std::size_t r = 1; r < rows.size(); ++r)
+    if (rows[r].time == rows[r - 1].time && rows[r].subject == rows[r - 1].subject)
+      place.bad_file(rows[r].line, "a second row of the same thing at " + number_text(rows[r].time) + " s");
+  if (!rows.empty() && rows.front().time < 0)
+    place.bad_file(rows.front().line, "the time " + number_text(rows.front().time) + " s is before the run's start at 0 s");
+}
+
+}  // namespace
+
+void ObservationPlace::bad_file(int line, const std::string& message) const {
+  ::jaxmpm::bad_file(pointer + "/file", file, line, message);
+}
+
+std::vector<ObservedRow> within_window(std::vector<ObservedRow> rows, const deck::Observed& observed, const ObservationPlace& place) {
+  if (rows.empty()) place.bad_file(0, "no row is left by the selection and the mask; nothing would be observed");
+  sort_rows(rows, place);
+  const double first = rows.front().time, last = rows.back().time, tolerance = same_time * place.end;
+  const double from = observed.from_time.value_or(first), to = std::min(observed.to_time.value_or(place.end), place.end);
+  std::vector<ObservedRow> kept;
+  double start = 0, counted = -1;  // the first time kept, and the last multiple of `every` that has had its time
+  for (ObservedRow& row : rows) {
+    if (row.time < from - tolerance || row.time > to + tolerance) continue;
+    row.time = std::min(row.time, place.end);
+    if (kept.empty()) start = row.time;
+    if (observed.every && (kept.empty() || row.time != kept.back().time)) {
+      const double multiple = std::floor((row.time - start) / *observed.every + same_time);
+      if (multiple == counted) continue;
+      counted = multiple;
+    }
+    kept.push_back(std::move(row));
+  }
+  if (kept.empty())
+    place.bad_file(0, "no row lies between " + number_text(from) + " s and " + number_text(to) + " s, where the run is observed; the rows are from " +
+                          number_text(first) + " s to " + number_text(last) + " s");
+  return kept;
+}
+
+void add_noise(std::vector<ObservedRow>& rows, const std::optional<deck::Noise>& noise, std::size_t index) {
+  if (!noise) return;
+  RandomStream random(noise->seed, index);
+  for (ObservedRow& row : rows)
+    for (double& value : row.value) value += noise->deviation * random.normal();
+}
+
+bool in_box(const deck::Box& box, const double* x) {
+  for (std::size_t a = 0; a < box.min.size(); ++a)
+    if (x[a] < box.min[a] || x[a] > box.max[a]) return false;
+  return true;
+}
+
+}  // namespace jaxmpm
