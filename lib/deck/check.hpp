@@ -1,7 +1,7 @@
 #pragma once
 // Checks that look at several parts of a deck at once: references, names, and what has no effect in this scene.
 #include "core/describe_place.hpp"
-#include "deck/deck.hpp"
+#include "deck/inverse.hpp"
 
 namespace jaxmpm::deck {
 
@@ -9,6 +9,9 @@ namespace jaxmpm::deck {
 void check_scene(const Deck& deck, const described::Place& root);
 void check_gauges(const Deck& deck, const described::Place& root);
 void check_inverse(const Deck& deck, const described::Place& root);
+/// One of /inverse/observations, at `place`: what it names, whether it can be differentiated, times outside of the run, keys without
+/// effect.
+void check_observation(const Deck& deck, const Observation& observation, const described::Place& place);
 
 /// Names of a list of named structs (bodies, obstacles).
 template <class T>

@@ -91,20 +91,6 @@ void check_twice(const Json& deck, const std::vector<Unknown>& unknowns, const P
                               pointer + " is an unknown already, by " + place.item(before->second).pointer + "; remove one of them");
 }
 
-void check_observation(const Deck& deck, const Observation& observation, const Place& place) {
-  if (const auto* particles = std::get_if<ParticlesObservation>(&observation))
-    check_reference(particles->body, names_in(deck.bodies), "body", place.key("body"));
-  if (const auto* profile = std::get_if<ProfileObservation>(&observation))
-    check_reference(profile->body, names_in(deck.bodies), "body", place.key("body"));
-  const auto* observed = std::get_if<GaugeObservation>(&observation);
-  if (observed == nullptr) return;
-  check_reference(observed->gauge, names_in(deck.gauges), "gauge", place.key("gauge"));
-  const auto gauge = deck.gauges.find(observed->gauge);
-  if (gauge == deck.gauges.end()) return;
-  if (const auto* front = std::get_if<FrontGauge>(&gauge->second); front != nullptr && front->smooth == 0.0)
-    place.problem("gauge", "\"" + observed->gauge + "\" has smooth 0: a hard gauge has no derivative; give it a width");
-}
-
 }  // namespace
 
 bool is_network(const std::string& pointer) { return pointer.size() > 4 && pointer.compare(pointer.size() - 4, 4, "/mlp") == 0; }

@@ -110,19 +110,23 @@ void describe(Description<Noise>& d) {
 }
 
 void describe(Description<ParticlesObservation>& d) {
-  d.is("particles", "A field of particles. CSV: time,id,x,y[,z] or time,id,vx,vy[,vz].", "observation");
+  d.is("particles", "A field of particles. CSV: time,id,x,y[,z][,sigma] or time,id,vx,vy[,vz][,sigma].", "observation");
   d.required("body", &ParticlesObservation::body);
   d.required("field", &ParticlesObservation::field).choices({"position", "velocity"});
   d.optional("select", &ParticlesObservation::select).help("\"all\", {random, seed} or {ids}.");
   describe_observed(d);
 }
 void describe(Description<GaugeObservation>& d) {
-  d.is("gauge", "Values of a gauge of the deck. CSV: time,value[,sigma].", "observation");
+  d.is("gauge", "Values of a gauge of the deck. CSV: time,value[,sigma], or value_x,value_y,… for the components of a vector.",
+       "observation");
   d.required("gauge", &GaugeObservation::gauge);
   describe_observed(d);
 }
 void describe(Description<ProfileObservation>& d) {
-  d.is("profile", "Height of a body's deposit. CSV: x[,y],height.", "observation");
+  d.is("profile",
+       "Surface of a body's deposit, as a height gauge reads it. CSV: x[,y],height[,sigma]. results.h5: the middle of each cell; its "
+       "frames need the density.",
+       "observation");
   d.required("body", &ProfileObservation::body);
   d.optional("time", &ProfileObservation::time).unit("s").from(0).word("end");
   describe_observed(d);

@@ -95,7 +95,7 @@ class ObservedGauges : public Observation {
  private:
   std::vector<std::unique_ptr<Gauge>> gauges_;
   std::size_t bodies_;
-  std::vector<bool> read_;                            // of each row
+  std::vector<bool> read_;                           // of each row
   std::vector<std::vector<SparseField>> gradients_;  // of the rows of one time, at the place of the first of them
 };
 

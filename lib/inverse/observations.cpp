@@ -83,8 +83,8 @@ class Observations : public Observer {
   void warn_of_unread() {
     for (std::size_t o = 0; o < observations_.size() && !warned_; ++o)
       if (const std::size_t unread = observations_[o]->unread(); unread > 0)
-        spdlog::warn("/inverse/observations/{}: at {} of {} rows the run has no material to read; they do not count in the loss.", o, unread,
-                     observations_[o]->rows().size());
+        spdlog::warn("/inverse/observations/{}: at {} of {} rows the run has no material to read; they do not count in the loss.", o,
+                     unread, observations_[o]->rows().size());
     warned_ = true;
   }
 

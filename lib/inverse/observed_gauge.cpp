@@ -38,7 +38,8 @@ std::vector<ObservedRow> rows_of_results(const deck::GaugeObservation& observed,
 std::vector<std::string> value_columns(const deck::GaugeObservation& observed, const ObservationPlace& place, const Gauge& gauge) {
   const std::vector<Channel> channels = gauge.channels();
   if (channels.size() != 1 || channels[0].name != "value")
-    throw DeckError(place.pointer + "/gauge", "\"" + observed.gauge + "\" reads fields of particles; from CSV, observe them as \"particles\"");
+    throw DeckError(place.pointer + "/gauge",
+                    "\"" + observed.gauge + "\" reads fields of particles; from CSV, observe them as \"particles\"");
   if (channels[0].components.empty()) return {"value"};
   std::vector<std::string> columns;
   for (const std::string& component : channels[0].components) columns.push_back("value_" + component);
@@ -48,7 +49,7 @@ std::vector<std::string> value_columns(const deck::GaugeObservation& observed, c
 }  // namespace
 
 std::vector<ObservedRow> read_gauge(const deck::GaugeObservation& observed, const ObservationPlace& place, const Gauge& gauge) {
-  if (is_hdf5(place.file, place.pointer + "/file")) {
+  if (is_hdf5(place.file)) {
     refuse_mask_column(observed, place);
     return rows_of_results(observed, place, gauge);
   }

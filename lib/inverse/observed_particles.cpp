@@ -104,8 +104,10 @@ class ResultsParticles {
       for (int a = 0; a < model.dim; ++a)
         if (const double own = model.domain_min[a] + own_.state.position[subject_[k]][a] * model.cell_size;
             !(std::abs(x[a] - own) < 0.5 * model.cell_size))
-          place_.bad_file(0, "particle " + std::to_string(chosen_[k]) + " starts at " + number_text(x[a]) + " m along " + "xyz"[a] + ", in this deck at " +
-                                 number_text(own) + " m: the run was seeded otherwise, so its ids are other particles; observe a gauge or the profile instead");
+          place_.bad_file(0,
+                          "particle " + std::to_string(chosen_[k]) + " starts at " + number_text(x[a]) + " m along " + "xyz"[a] +
+                              ", in this deck at " + number_text(own) +
+                              " m: the run was seeded otherwise, so its ids are other particles; observe a gauge or the profile instead");
     }
   }
   void add(std::size_t frame, std::vector<ObservedRow>& rows) const {
@@ -117,7 +119,11 @@ class ResultsParticles {
     for (std::size_t k = 0; k < chosen_.size(); ++k) {
       const std::size_t p = index_of(chosen_[k], ids) * dim;
       if (box && !in_box(*box, &positions[p])) continue;
-      rows.push_back({results_.frame_times()[frame], subject_[k], {values.begin() + static_cast<std::ptrdiff_t>(p), values.begin() + static_cast<std::ptrdiff_t>(p) + dim}, 1, 0});
+      rows.push_back({results_.frame_times()[frame],
+                      subject_[k],
+                      {values.begin() + static_cast<std::ptrdiff_t>(p), values.begin() + static_cast<std::ptrdiff_t>(p) + dim},
+                      1,
+                      0});
     }
   }
 
@@ -147,14 +153,15 @@ std::vector<ObservedRow> rows_of_table(const deck::ParticlesObservation& observe
   std::vector<ObservedRow> rows;
   for (std::size_t r = 0; r < table.size(); ++r)
     if (holds(chosen, ids[r]) && table.counts(r) && (!box || in_box(*box, table.values(r, position).data())))
-      rows.push_back({table.value(r, "time"), static_cast<std::size_t>(ids[r] - own.state.id.front()), table.values(r, names), table.sigma(r), table.line(r)});
+      rows.push_back({table.value(r, "time"), static_cast<std::size_t>(ids[r] - own.state.id.front()), table.values(r, names),
+                      table.sigma(r), table.line(r)});
   return rows;
 }
 
 }  // namespace
 
 std::vector<ObservedRow> read_particles(const deck::ParticlesObservation& observed, const ObservationPlace& place, std::size_t body) {
-  if (!is_hdf5(place.file, place.pointer + "/file")) return rows_of_table(observed, place, body);
+  if (!is_hdf5(place.file)) return rows_of_table(observed, place, body);
   refuse_mask_column(observed, place);
   return ResultsParticles(observed, place, body).rows();
 }

@@ -53,7 +53,8 @@ ObservedProfile profile_of_table(const deck::ProfileObservation& observed, const
                                           " m; leave the row out, or move it into the deck's coordinates");
     }
     if (table.counts(r))
-      add_row(observed, place, at, {observed.time.value_or(place.end), 0, {table.value(r, "height")}, table.sigma(r), table.line(r)}, profile);
+      add_row(observed, place, at, {observed.time.value_or(place.end), 0, {table.value(r, "height")}, table.sigma(r), table.line(r)},
+              profile);
   }
   return profile;
 }
@@ -77,7 +78,8 @@ std::size_t frame_at(const ResultsReader& results, double time, const Observatio
   for (std::size_t f = 1; f < times.size(); ++f)
     if (std::abs(times[f] - time) < std::abs(times[nearest] - time)) nearest = f;
   if (std::abs(times[nearest] - time) > 1e-3 * place.end)
-    place.bad_file(0, "no frame lies at " + number_text(time) + " s; the nearest is at " + number_text(times[nearest]) + " s: observe it there (key `time`)");
+    place.bad_file(0, "no frame lies at " + number_text(time) + " s; the nearest is at " + number_text(times[nearest]) +
+                          " s: observe it there (key `time`)");
   return nearest;
 }
 
@@ -86,7 +88,8 @@ BodySnapshot particles_of(const ResultsReader& results, std::size_t frame, const
                           const ObservationPlace& place) {
   for (const std::size_t f : {std::size_t(0), frame})
     if (!results.has_field(f, observed.body, "density"))
-      place.bad_file(0, "the frames hold no density of '" + observed.body + "', which the height needs; run again with it among /output/fields");
+      place.bad_file(
+          0, "the frames hold no density of '" + observed.body + "', which the height needs; run again with it among /output/fields");
   const double volume = lattice_volume(results, observed.body, place.model.dim);
   BodySnapshot particles;
   particles.position = results.field(frame, observed.body, "position");
@@ -134,7 +137,7 @@ ObservedProfile profile_of_results(const deck::ProfileObservation& observed, con
 }  // namespace
 
 ObservedProfile read_profile(const deck::ProfileObservation& observed, const ObservationPlace& place, std::size_t body) {
-  const bool results = is_hdf5(place.file, place.pointer + "/file");
+  const bool results = is_hdf5(place.file);
   if (results) refuse_mask_column(observed, place);
   ObservedProfile profile = results ? profile_of_results(observed, place, body) : profile_of_table(observed, place);
   if (profile.rows.empty()) place.bad_file(0, "no row is left by the mask; nothing would be observed");

@@ -13,9 +13,8 @@ namespace {
 constexpr double same_time = 1e-9;  // relative to the end of the run, and to `every`
 
 void sort_rows(std::vector<ObservedRow>& rows, const ObservationPlace& place) {
-  std::stable_sort(rows.begin(), rows.end(), [](const ObservedRow& a, const ObservedRow& b) {
-    return a.time != b.time ? a.time < b.time : a.subject < b.subject;
-  });
+  std::stable_sort(rows.begin(), rows.end(),
+                   [](const ObservedRow& a, const ObservedRow& b) { return a.time != b.time ? a.time < b.time : a.subject < b.subject; });
   for (std::size_t r = 1; r < rows.size(); ++r)
     if (rows[r].time == rows[r - 1].time && rows[r].subject == rows[r - 1].subject)
       place.bad_file(rows[r].line, "a second row of the same thing at " + number_text(rows[r].time) + " s");
@@ -25,9 +24,7 @@ void sort_rows(std::vector<ObservedRow>& rows, const ObservationPlace& place) {
 
 }  // namespace
 
-void ObservationPlace::bad_file(int line, const std::string& message) const {
-  ::jaxmpm::bad_file(pointer + "/file", file, line, message);
-}
+void ObservationPlace::bad_file(int line, const std::string& message) const { ::jaxmpm::bad_file(pointer + "/file", file, line, message); }
 
 std::vector<ObservedRow> within_window(std::vector<ObservedRow> rows, const deck::Observed& observed, const ObservationPlace& place) {
   if (rows.empty()) place.bad_file(0, "no row is left by the selection and the mask; nothing would be observed");
@@ -48,8 +45,8 @@ std::vector<ObservedRow> within_window(std::vector<ObservedRow> rows, const deck
     kept.push_back(std::move(row));
   }
   if (kept.empty())
-    place.bad_file(0, "no row lies between " + number_text(from) + " s and " + number_text(to) + " s, where the run is observed; the rows are from " +
-                          number_text(first) + " s to " + number_text(last) + " s");
+    place.bad_file(0, "no row lies between " + number_text(from) + " s and " + number_text(to) +
+                          " s, where the run is observed; the rows are from " + number_text(first) + " s to " + number_text(last) + " s");
   return kept;
 }
 

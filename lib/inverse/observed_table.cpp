@@ -18,7 +18,8 @@ std::vector<double> ObservedTable::values(std::size_t row, const std::vector<std
 bool ObservedTable::counts(std::size_t row) const {
   if (mask_.empty()) return true;
   const double mask = value(row, mask_);
-  if (mask != 0 && mask != 1) place_.bad_file(line(row), "the mask column '" + mask_ + "' holds 1 for a row that counts and 0 for another, nothing else");
+  if (mask != 0 && mask != 1)
+    place_.bad_file(line(row), "the mask column '" + mask_ + "' holds 1 for a row that counts and 0 for another, nothing else");
   return mask == 1;
 }
 
@@ -31,7 +32,8 @@ double ObservedTable::sigma(std::size_t row) const {
 
 void refuse_mask_column(const deck::Observed& observed, const ObservationPlace& place) {
   if (std::holds_alternative<std::string>(observed.mask))
-    throw DeckError(place.pointer + "/mask", "names a column of a CSV, but '" + place.file + "' is the results of a run; use a box, or \"none\"");
+    throw DeckError(place.pointer + "/mask",
+                    "names a column of a CSV, but '" + place.file + "' is the results of a run; use a box, or \"none\"");
 }
 
 }  // namespace jaxmpm

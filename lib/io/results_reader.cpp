@@ -8,11 +8,9 @@
 
 namespace jaxmpm {
 
-bool is_hdf5(const std::string& path, const std::string& pointer) {
-  std::ifstream stream(path, std::ios::binary);
+bool is_hdf5(const std::string& path) {
   std::array<char, 4> first{};
-  if (stream.peek() == EOF) throw IoError(pointer + ": cannot read the file '" + path + "'; give an existing file, relative names start at the deck");
-  stream.read(first.data(), first.size());
+  std::ifstream(path, std::ios::binary).read(first.data(), first.size());
   return std::memcmp(first.data(), "\x89HDF", first.size()) == 0;
 }
 

@@ -8,8 +8,8 @@
 
 namespace jaxmpm {
 
-/// Whether a file begins as HDF5 does. Throws IoError, with the pointer of the key that names it, when it cannot be read.
-bool is_hdf5(const std::string& path, const std::string& pointer);
+/// Whether a file begins as HDF5 does; not so where it cannot be read.
+bool is_hdf5(const std::string& path);
 
 /// One gauge's readings: the values of the datasets asked for one after another at each time.
 struct GaugeReadings {

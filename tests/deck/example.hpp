@@ -20,6 +20,7 @@ class Folder {
   ~Folder() { std::filesystem::remove_all(path_); }
   Folder(const Folder&) = delete;
   Folder& operator=(const Folder&) = delete;
+  std::string directory(const std::string& name) const { return (path_ / name).string(); }
   std::string file(const std::string& name, const std::string& text) const {
     const std::filesystem::path at = path_ / name;
     std::ofstream(at, std::ios::binary) << text;
