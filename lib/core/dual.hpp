@@ -60,6 +60,7 @@ struct Dual {
   }
   friend JAXMPM_INLINE Dual log(const Dual& a) { return chain(log(a.value), T(1) / a.value, a); }
   friend JAXMPM_INLINE Dual log1p(const Dual& a) { return chain(log1p(a.value), T(1) / (T(1) + a.value), a); }
+  friend JAXMPM_INLINE Dual expm1(const Dual& a) { return chain(expm1(a.value), exp(a.value), a); }
   friend JAXMPM_INLINE Dual sin(const Dual& a) { return chain(sin(a.value), cos(a.value), a); }
   friend JAXMPM_INLINE Dual cos(const Dual& a) { return chain(cos(a.value), -sin(a.value), a); }
   friend JAXMPM_INLINE auto value_of(const Dual& a) { return value_of(a.value); }

@@ -29,6 +29,8 @@ JAXMPM_INLINE float sin(float x) { return std::sin(x); }
 JAXMPM_INLINE double sin(double x) { return std::sin(x); }
 JAXMPM_INLINE float cos(float x) { return std::cos(x); }
 JAXMPM_INLINE double cos(double x) { return std::cos(x); }
+JAXMPM_INLINE float expm1(float x) { return std::expm1(x); }
+JAXMPM_INLINE double expm1(double x) { return std::expm1(x); }
 JAXMPM_INLINE float log1p(float x) { return std::log1p(x); }
 JAXMPM_INLINE double log1p(double x) { return std::log1p(x); }
 

@@ -56,21 +56,42 @@ Mlp::Mlp(const deck::Mlp& description, int dim, const std::string& pointer)
                     "the network has " + std::to_string(weight_count(widths_)) + " weights, here are " + std::to_string(weights_.size()));
 }
 
-double Mlp::value(const std::array<double, 3>& place) const {
-  std::vector<double> now(inputs_.size()), next;
-  for (std::size_t i = 0; i < inputs_.size(); ++i) now[i] = scale_[i] * place[inputs_[i]];
+std::vector<std::vector<double>> Mlp::layers(const std::array<double, 3>& place) const {
+  std::vector<std::vector<double>> values(widths_.size());
+  for (std::size_t i = 0; i < inputs_.size(); ++i) values[0].push_back(scale_[i] * place[inputs_[i]]);
   const double* w = weights_.data();
   for (std::size_t l = 0; l + 1 < widths_.size(); ++l) {
     const double* bias = w + static_cast<std::size_t>(widths_[l]) * widths_[l + 1];
-    next.assign(bias, bias + widths_[l + 1]);
-    for (double& neuron : next)
-      for (double a : now) neuron += *w++ * a;
+    values[l + 1].assign(bias, bias + widths_[l + 1]);
+    for (double& neuron : values[l + 1])
+      for (const double a : values[l]) neuron += *w++ * a;
     w += widths_[l + 1];
     if (l + 2 < widths_.size())
-      for (double& neuron : next) neuron = tanh_ ? std::tanh(neuron) : std::max(0.0, neuron);
-    now.swap(next);
+      for (double& neuron : values[l + 1]) neuron = tanh_ ? std::tanh(neuron) : std::max(0.0, neuron);
   }
-  return output_scale_ * now[0];
+  return values;
+}
+
+double Mlp::value(const std::array<double, 3>& place) const { return output_scale_ * layers(place).back()[0]; }
+
+void Mlp::add_gradient(const std::array<double, 3>& place, double by_value, double* by_weights) const {
+  const std::vector<std::vector<double>> values = layers(place);
+  std::vector<double> by_layer{output_scale_ * by_value};  // by the neurons of layer l + 1, before activation
+  std::size_t end = weights_.size();
+  for (std::size_t l = widths_.size() - 1; l-- > 0;) {
+    const auto in = static_cast<std::size_t>(widths_[l]), out = static_cast<std::size_t>(widths_[l + 1]), begin = end - (in + 1) * out;
+    std::vector<double> below(in, 0.0);
+    for (std::size_t j = 0; j < out; ++j) {
+      for (std::size_t i = 0; i < in; ++i) {
+        by_weights[begin + j * in + i] += by_layer[j] * values[l][i];
+        below[i] += by_layer[j] * weights_[begin + j * in + i];
+      }
+      by_weights[begin + in * out + j] += by_layer[j];
+    }
+    for (std::size_t i = 0; i < in; ++i) below[i] *= tanh_ ? 1 - values[l][i] * values[l][i] : (values[l][i] > 0 ? 1 : 0);
+    by_layer = std::move(below);
+    end = begin;
+  }
 }
 
 }  // namespace jaxmpm

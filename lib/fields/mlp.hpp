@@ -15,10 +15,17 @@ class Mlp : public Field {
   Mlp(const deck::Mlp& description, int dim, const std::string& pointer);
   double value(const std::array<double, 3>& place) const override;
 
+  /// Adds by_value · ∂value/∂weights at a place (reverse mode) to `by_weights`, in the order of weights(). ReLU is differentiated as taken,
+  /// with slope 0 at 0.
+  void add_gradient(const std::array<double, 3>& place, double by_value, double* by_weights) const;
+
   /// All weights, layer by layer: the matrix row by row (one row for each output), then the biases.
   const std::vector<double>& weights() const { return weights_; }
 
  private:
+  /// Values of each layer at a place: inputs, hidden layers after activation, the output before its scale.
+  std::vector<std::vector<double>> layers(const std::array<double, 3>& place) const;
+
   std::vector<int> inputs_;    // coordinate index of each
   std::vector<double> scale_;  // of each input
   std::vector<int> widths_;    // inputs, hidden…, 1

@@ -35,13 +35,6 @@ std::array<FaceLaw, 6> make_faces(const deck::Deck& deck, const Frame& frame) {
   return faces;
 }
 
-std::vector<GeometryPointer> obstacle_shapes(const deck::Deck& deck, const Frame& frame) {
-  std::vector<GeometryPointer> shapes;
-  for (std::size_t i = 0; i < deck.obstacles.size(); ++i)
-    shapes.push_back(make_geometry(deck.obstacles[i].shape, frame, "/obstacles/" + std::to_string(i) + "/shape"));
-  return shapes;
-}
-
 RigidObstacle make_obstacle(const deck::Obstacle& obstacle, const GeometryPointer& shape) {
   RigidObstacle made;
   made.name = obstacle.name;

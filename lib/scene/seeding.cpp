@@ -160,6 +160,13 @@ bool holds(const Geometry& shape, const Point& place, int up, Spans& scratch) {
 
 }  // namespace
 
+std::vector<GeometryPointer> obstacle_shapes(const deck::Deck& deck, const Frame& frame) {
+  std::vector<GeometryPointer> shapes;
+  for (std::size_t i = 0; i < deck.obstacles.size(); ++i)
+    shapes.push_back(make_geometry(deck.obstacles[i].shape, frame, "/obstacles/" + std::to_string(i) + "/shape"));
+  return shapes;
+}
+
 SeededScene seed_bodies(const deck::Deck& deck, const Frame& frame, const std::vector<GeometryPointer>& obstacles) {
   SeededScene scene;
   for (std::size_t i = 0; i < deck.bodies.size(); ++i)

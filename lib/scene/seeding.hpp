@@ -19,6 +19,9 @@ struct SeededScene {
   std::vector<Seeds> seeds;
 };
 
+/// Shapes of the deck's obstacles.
+std::vector<GeometryPointer> obstacle_shapes(const deck::Deck& deck, const Frame& frame);
+
 /// Seeds every body. `obstacles` are the obstacles' shapes. DeckError at /bodies/i for a body without particles, one that leaves the
 /// domain, or one that holds a particle of another.
 SeededScene seed_bodies(const deck::Deck& deck, const Frame& frame, const std::vector<GeometryPointer>& obstacles);
