@@ -95,7 +95,7 @@ inline const char* const full_deck = R"({
                   { "path": "/bodies/2/velocity/1/mlp", "prior": { "mean": 0, "deviation": 1 } },
                   { "path": "/materials/*/density", "start": 1200, "share": true, "transform": "log" } ],
     "observations": [
-      { "kind": "particles", "body": "pool", "field": "position", "file": "t.h5", "select": { "random": 500, "seed": 1 }, "from_time": 0, "to_time": 1, "every": 0.1 },
+      { "kind": "particles", "body": "pool", "field": "position", "file": "t.h5", "select": { "random": 500, "seed": 1 }, "from_time": 0, "to_time": 0.7, "every": 0.1 },
       { "kind": "gauge", "gauge": "front", "file": "g.csv", "weight": 2, "noise": { "deviation": 0.1, "seed": 2 }, "mask": "good" },
       { "kind": "profile", "body": "heap", "file": "p.csv", "time": 0.5, "mask": { "box": { "min": [0, 0, 0], "max": [1, 1, 1] } } } ],
     "optimizer": { "method": "lbfgs", "iterations": 30, "memory": 5, "tolerance": 1e-4 },
