@@ -79,7 +79,7 @@ def main():
         for count in (40, 30, 20):
             runs[f"1/{count} m"] = check.run("dam_break_obstacle.json", f"cells_{count}", settings(count))
         for transfer in ("flip", "tpic"):
-            runs[f"1/40 m, {transfer}"] = check.run("dam_break_obstacle.json", f"cells_40_{transfer}", {**settings(40), "/method/transfer": transfer})
+            runs[f"1/30 m, {transfer}"] = check.run("dam_break_obstacle.json", f"cells_30_{transfer}", {**settings(30), "/method/transfer": transfer})
         for name, results in runs.items():
             tell(check, name, results, measured)
     judge(check, next(iter(runs.values())), measured)
