@@ -1,0 +1,143 @@
+#include "inverse/unknowns.hpp"
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "fields/mlp.hpp"
+
+namespace jaxmpm {
+namespace {
+
+using deck::Transform;
+using nlohmann::json;
+constexpr double unbounded = std::numeric_limits<double>::infinity();
+
+/// The network at /bodies/B/velocity/C/mlp.
+const deck::Mlp& network_at(const deck::Deck& deck, const std::string& pointer) {
+  const std::size_t body_at = std::string("/bodies/").size(), component_at = pointer.find("/velocity/") + std::string("/velocity/").size();
+  const deck::Body& body = deck.bodies.at(std::stoul(pointer.substr(body_at)));
+  return std::get<deck::Mlp>(std::get<std::vector<deck::Component>>(body.velocity).at(std::stoul(pointer.substr(component_at))));
+}
+
+/// Numbers at which the search starts, at the pointer `index` of the unknown's.
+Variables start_of(const deck::Deck& deck, const json& resolved, const deck::Unknown& unknown, const std::string& pointer,
+                   std::size_t index) {
+  if (deck::is_network(pointer)) return Mlp(network_at(deck, pointer), deck.dimension(), pointer).weights();
+  if (const auto* number = std::get_if<double>(&unknown.start)) return {*number};
+  if (const auto* list = std::get_if<deck::Numbers>(&unknown.start)) return {list->at(index)};
+  return {resolved.at(json::json_pointer(pointer)).get<double>()};
+}
+
+double variable(Transform transform, double lower, double upper, double x) {
+  if (transform == Transform::log) return std::log(x);  // −∞ at 0
+  if (transform == Transform::logit) return std::log((x - lower) / (upper - x));
+  return x;
+}
+
+}  // namespace
+
+Unknowns::Unknowns(const deck::Deck& deck) {
+  const deck::Inverse inverse = deck::inverse_of(deck);
+  const json resolved = json::parse(deck.resolved);
+  for (std::size_t k = 0; k < inverse.unknowns.size(); ++k) {
+    const deck::Unknown& unknown = inverse.unknowns[k];
+    const auto bounds = unknown.bounds.value_or(deck::Numbers{-unbounded, unbounded});
+    laws_.push_back({unknown.transform, bounds[0], bounds[1], unknown.prior});
+    paths_.push_back(unknown.path);
+    const std::vector<std::string> pointers = deck::pointers_of(unknown.path, described::Json::parse(deck.resolved));
+    if (unknown.share) {
+      add_block(k, pointers, start_of(deck, resolved, unknown, pointers.front(), 0));
+      continue;
+    }
+    for (std::size_t i = 0; i < pointers.size(); ++i) add_block(k, {pointers[i]}, start_of(deck, resolved, unknown, pointers[i], i));
+  }
+}
+
+void Unknowns::add_block(std::size_t index, std::vector<std::string> pointers, const Variables& start) {
+  const Law& own = laws_[index];
+  const bool plain = own.transform == Transform::none;
+  pointers_.insert(pointers_.end(), pointers.begin(), pointers.end());
+  blocks_.push_back({index, std::move(pointers), space_.size(), start.size()});
+  for (const double x : start) {
+    const double u = variable(own.transform, own.lower, own.upper, x), width = own.upper - own.lower;
+    if (own.prior) prior_variables_.push_back(unknown_of_.size());
+    unknown_of_.push_back(index);
+    space_.start.push_back(u);
+    // A logit has its bounds at infinity; a logarithm's lower bound is there when the number's is 0 or none.
+    space_.lower.push_back(plain ? own.lower : own.transform == Transform::log && own.lower > 0 ? std::log(own.lower) : -unbounded);
+    space_.upper.push_back(plain ? own.upper : own.transform == Transform::log ? std::log(own.upper) : unbounded);
+    space_.scale.push_back(!plain ? 1 : std::isfinite(width) ? width : x != 0 && start.size() == 1 ? std::abs(x) : 1);
+  }
+}
+
+std::string Unknowns::label(std::size_t variable) const {
+  for (const VariableBlock& block : blocks_) {
+    if (variable >= block.first + block.count) continue;
+    const std::string name = block.pointers.size() > 1 ? paths_[block.unknown] : block.pointers.front();
+    return block.count == 1 ? name : name + "[" + std::to_string(variable - block.first) + "]";
+  }
+  return {};
+}
+
+double Unknowns::number(std::size_t variable, double u) const {
+  const Law& own = law(variable);
+  if (own.transform == Transform::none) return u;
+  const double x = own.transform == Transform::log ? std::exp(u) : own.lower + (own.upper - own.lower) / (1 + std::exp(-u));
+  return std::clamp(x, own.lower, own.upper);  // rounding may lead out by one unit in the last place
+}
+
+double Unknowns::slope(std::size_t variable, double u) const {
+  const Law& own = law(variable);
+  if (own.transform == Transform::none) return 1;
+  const double x = number(variable, u);
+  return own.transform == Transform::log ? x : (x - own.lower) * (own.upper - x) / (own.upper - own.lower);
+}
+
+Values Unknowns::values(const Variables& u) const {
+  Values found;
+  for (const VariableBlock& block : blocks_) {
+    std::vector<double> numbers(block.count);
+    for (std::size_t i = 0; i < block.count; ++i) numbers[i] = number(block.first + i, u[block.first + i]);
+    for (const std::string& pointer : block.pointers) found[pointer] = numbers;
+  }
+  return found;
+}
+
+Variables Unknowns::slopes(const Variables& u) const {
+  Variables found(size());
+  for (std::size_t i = 0; i < size(); ++i) found[i] = slope(i, u[i]);
+  return found;
+}
+
+Variables Unknowns::gradient(const Variables& u, const Values& by_pointer) const {
+  Variables found(size(), 0.0);
+  for (const VariableBlock& block : blocks_)
+    for (const std::string& pointer : block.pointers)
+      for (std::size_t i = 0; i < block.count; ++i)
+        found[block.first + i] += by_pointer.at(pointer).at(i) * slope(block.first + i, u[block.first + i]);
+  return found;
+}
+
+Variables Unknowns::prior_residuals(const Variables& u) const {
+  Variables residuals;
+  for (const std::size_t i : prior_variables_) residuals.push_back((number(i, u[i]) - law(i).prior->mean) / law(i).prior->deviation);
+  return residuals;
+}
+
+void Unknowns::add_prior_gradient(const Variables& u, Variables& gradient) const {
+  const Variables residuals = prior_residuals(u);
+  for (std::size_t k = 0; k < residuals.size(); ++k) {
+    const std::size_t i = prior_variables_[k];
+    gradient[i] += residuals[k] * slope(i, u[i]) / law(i).prior->deviation;
+  }
+}
+
+std::vector<std::string> assignments(const Values& values) {
+  std::vector<std::string> list;
+  for (const auto& [pointer, numbers] : values)
+    list.push_back(deck::is_network(pointer) ? pointer + "/weights=" + json(numbers).dump() : pointer + "=" + json(numbers.at(0)).dump());
+  return list;
+}
+
+}  // namespace jaxmpm

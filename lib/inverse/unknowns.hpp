@@ -1,0 +1,71 @@
+#pragma once
+// The unknowns of a deck as variables that an optimiser moves, and back. A number x of the deck is x = u, x = exp u (log) or
+// x = a + (b − a)/(1 + exp −u) (logit within the bounds a, b) of its variable u.
+#include <map>
+#include <optional>
+#include <string>
+
+#include "deck/inverse.hpp"
+#include "inverse/search_space.hpp"
+
+namespace jaxmpm {
+
+/// Values by JSON pointer: a number has one, a network one for each of its weights (Mlp::weights()).
+using Values = std::map<std::string, std::vector<double>>;
+
+/// Variables one after another that stand for one number (of all pointers that share it) or one network.
+struct VariableBlock {
+  std::size_t unknown;                // index in /inverse/unknowns
+  std::vector<std::string> pointers;  // that have these values
+  std::size_t first, count;           // variables
+};
+
+class Unknowns {
+ public:
+  /// Of a deck with /inverse, in its order. Throws DeckError when there is none.
+  explicit Unknowns(const deck::Deck& deck);
+  const SearchSpace& space() const { return space_; }
+  std::size_t size() const { return space_.size(); }
+  const std::vector<VariableBlock>& blocks() const { return blocks_; }
+  const std::vector<std::string>& pointers() const { return pointers_; }
+  /// What a variable is called in tables: its pointer, the path where several share it, with the number of the weight for a network.
+  std::string label(std::size_t variable) const;
+
+  /// The deck's numbers.
+  Values values(const Variables& u) const;
+  /// dx/du of each variable: what an error of the variable is multiplied with to be one of the number.
+  Variables slopes(const Variables& u) const;
+  /// Gradient by the variables from that by the deck's numbers: chain rule, and the sum over those that share one.
+  Variables gradient(const Variables& u, const Values& by_pointer) const;
+
+  /// Gaussian priors: residuals (x − mean)/deviation of the variables that have one, in their order; the loss is half their sum of squares.
+  Variables prior_residuals(const Variables& u) const;
+  /// Variable of each prior residual.
+  const std::vector<std::size_t>& prior_variables() const { return prior_variables_; }
+  /// Adds the gradient of the priors' loss by the variables.
+  void add_prior_gradient(const Variables& u, Variables& gradient) const;
+
+ private:
+  struct Law {
+    deck::Transform transform;
+    double lower, upper;  // of the number
+    std::optional<deck::Prior> prior;
+  };
+  void add_block(std::size_t index, std::vector<std::string> pointers, const Variables& start);
+  const Law& law(std::size_t variable) const { return laws_[unknown_of_[variable]]; }
+  double number(std::size_t variable, double u) const;
+  double slope(std::size_t variable, double u) const;
+
+  std::vector<Law> laws_;  // of each of /inverse/unknowns
+  std::vector<std::string> paths_;
+  std::vector<VariableBlock> blocks_;
+  std::vector<std::string> pointers_;
+  std::vector<std::size_t> unknown_of_;  // of each variable
+  std::vector<std::size_t> prior_variables_;
+  SearchSpace space_;
+};
+
+/// What makes with_assignments() or `--set` give a deck these values.
+std::vector<std::string> assignments(const Values& values);
+
+}  // namespace jaxmpm
