@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "core/describe_place.hpp"
 #include "core/error.hpp"
 #include "core/provenance.hpp"
 #include "io/hdf5.hpp"
@@ -139,14 +140,17 @@ std::optional<Checkpoint> newest_checkpoint(const ResultsDirectory& directory) {
                 "' can be read. Start the run anew with --overwrite, or give --resume a good checkpoint.");
 }
 
-void require_same_deck(const std::string& before, const std::string& now, const std::string& file) {
+void require_same_deck(const std::string& before, const std::string& now, const std::string& file,
+                       const std::vector<std::string>& may_change) {
   using Json = nlohmann::json;
-  const auto relevant = [](const std::string& text) {
+  const auto relevant = [&may_change](const std::string& text) {
     Json deck = Json::parse(text, nullptr, false, true);
     if (!deck.is_object()) return deck;
-    deck.erase("output");
     deck.erase("$schema");
-    if (deck.contains("time") && deck["time"].is_object()) deck["time"].erase("end");
+    for (const std::string& pointer : may_change) {
+      const Json::json_pointer place(pointer);
+      if (deck.contains(place) && deck[place.parent_pointer()].is_object()) deck[place.parent_pointer()].erase(place.back());
+    }
     return deck;
   };
   const Json old_deck = relevant(before), new_deck = relevant(now);
@@ -155,10 +159,9 @@ void require_same_deck(const std::string& before, const std::string& now, const 
     const std::string pointer = change["path"];
     const Json::json_pointer place(pointer);
     const auto shown = [&](const Json& deck) { return deck.contains(place) ? deck.at(place).dump() : std::string("nothing"); };
-    problems.push_back(
-        {pointer, 0,
-         "is " + shown(new_deck) + " but was " + shown(old_deck) + " in '" + file +
-             "'. A resumed run may change /time/end and /output only; put it back, or start anew with --overwrite or another -o."});
+    problems.push_back({pointer, 0,
+                        "is " + shown(new_deck) + " but was " + shown(old_deck) + " in '" + file + "'. What may change on resuming is " +
+                            described::listed(may_change) + "; put it back, or start anew with --overwrite or another -o."});
   }
   if (!problems.empty()) throw DeckError(problems);
 }

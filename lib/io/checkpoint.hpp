@@ -26,8 +26,9 @@ Checkpoint read_checkpoint(const std::string& path);
 /// Throws IoError when there are some but none can be read.
 std::optional<Checkpoint> newest_checkpoint(const ResultsDirectory& directory);
 
-/// Throws DeckError naming every key in which the deck differs from that of a checkpoint or of earlier results, but for those that a
-/// resumed run may change: /time/end and /output.
-void require_same_deck(const std::string& before, const std::string& now, const std::string& file);
+/// Throws DeckError naming every key in which the deck differs from that of a checkpoint or of earlier results, but for those at or below
+/// the pointers `may_change`.
+void require_same_deck(const std::string& before, const std::string& now, const std::string& file,
+                       const std::vector<std::string>& may_change = {"/time/end", "/output"});
 
 }  // namespace jaxmpm

@@ -1,0 +1,128 @@
+#include "inverse/inversion.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <cmath>
+
+#include "core/error.hpp"
+#include "inverse/differentiated_run.hpp"
+#include "inverse/optimizer.hpp"
+
+namespace jaxmpm {
+namespace {
+
+constexpr std::size_t most_standard_errors = 20;  // unknowns up to which they are given: two runs for each
+constexpr std::size_t most_gauss_newton = 100;    // unknowns: a Jacobian of more would cost more than many gradients
+constexpr std::size_t most_shown = 4;             // numbers in the line of an iteration
+
+void check_size(const deck::Optimizer& optimizer, std::size_t unknowns) {
+  if (std::holds_alternative<deck::GaussNewton>(optimizer) && unknowns > most_gauss_newton)
+    throw DeckError("/inverse/optimizer/method",
+                    fmt::format("\"gauss_newton\" takes two runs for each unknown in each iteration, and here are "
+                                "{} of them (at most {}); choose adam or lbfgs",
+                                unknowns, most_gauss_newton));
+}
+
+std::string shown_numbers(const Unknowns& unknowns, const Variables& u) {
+  const Values values = unknowns.values(u);
+  std::string text;
+  std::size_t shown = 0;
+  for (const VariableBlock& block : unknowns.blocks()) {
+    if (block.count > 1 || shown == most_shown) continue;
+    text += fmt::format("  {} {:.6g}", unknowns.label(block.first), values.at(block.pointers.front()).at(0));
+    ++shown;
+  }
+  return text;
+}
+
+}  // namespace
+
+std::optional<Variables> standard_errors(const Linearisation& about, const Variables& slopes) {
+  const std::size_t n = slopes.size();
+  if (about.residuals <= n) return std::nullopt;
+  const auto inverse = inverse_diagonal(about.normal);
+  if (!inverse) return std::nullopt;
+  const double variance = 2 * about.loss / static_cast<double>(about.residuals - n);
+  Variables errors(n);
+  for (std::size_t i = 0; i < n; ++i) errors[i] = std::abs(slopes[i]) * std::sqrt(variance * (*inverse)[i]);
+  return errors;
+}
+
+Inversion::Inversion(const deck::Deck& deck, const Unknowns& unknowns, Objective& objective, const InversionDirectory& directory,
+                     std::vector<RecordedEvaluation> before)
+    : unknowns_(unknowns),
+      directory_(directory),
+      optimizer_(deck::inverse_of(deck).optimizer),
+      loss_(unknowns, objective, std::move(before), [this] { tell_evaluation(); }),
+      state_{deck, unknowns, loss_, "running", std::nullopt} {
+  check_size(optimizer_, unknowns.size());
+  for (const RecordedEvaluation& one : loss_.evaluations()) iterations_ += one.is_iteration();
+}
+
+bool Inversion::run() {
+  if (loss_.replaying()) spdlog::info("{} recorded evaluations are gone through again.", loss_.evaluations().size());
+  std::string ended;
+  try {
+    ended = name_of(minimise(optimizer_, loss_));
+    find_standard_errors();
+  } catch (const Stopped&) {
+    take("stopped");
+    return false;
+  } catch (const DeckError& error) {
+    std::vector<Problem> problems = error.problems;
+    for (Problem& problem : problems) problem.message += "; the search led there: give the unknown bounds that keep it out";
+    throw DeckError(std::move(problems));
+  }
+  take(ended);
+  tell_result();
+  return true;
+}
+
+void Inversion::take(const std::string& stopped) {
+  state_.stopped = stopped;
+  directory_.write(state_);
+}
+
+void Inversion::tell_evaluation() {
+  directory_.write(state_);
+  const RecordedEvaluation& last = loss_.evaluations().back();
+  if (last.diverged) return spdlog::info("        a run became unstable; a smaller step is tried");
+  if (!last.is_iteration()) return;
+  const Variables gradient(last.derivative.begin(), last.derivative.begin() + static_cast<std::ptrdiff_t>(last.u.size()));
+  spdlog::info("{:5}  loss {:.6e}  |gradient| {:.3e}{}  {:.3g} + {:.3g} s", ++iterations_, last.loss,
+               unknowns_.space().free_norm(last.u, gradient), shown_numbers(unknowns_, last.u), last.forward_seconds,
+               last.gradient_seconds);
+}
+
+void Inversion::find_standard_errors() {
+  if (unknowns_.size() > most_standard_errors) return;
+  const Variables best = loss_.best()->u;
+  try {
+    loss_.renew_steps(best);
+    const Linearisation about = loss_.statistics(best);
+    state_.standard_errors = standard_errors(about, unknowns_.slopes(best));
+  } catch (const NumericsError&) {
+    return spdlog::warn("No standard errors: a run beside the best values became unstable.");
+  }
+  if (!state_.standard_errors)
+    spdlog::warn(
+        "No standard errors: these observations do not tell the unknowns apart (or are fewer than they). Fix some unknowns, share "
+        "them, give them priors, or observe more.");
+}
+
+void Inversion::tell_result() const {
+  const RecordedEvaluation& best = *loss_.best();
+  spdlog::info("{} after {} iterations and {} evaluations: loss {:.6e}", state_.stopped, iterations_, loss_.evaluations().size(),
+               best.loss);
+  const Values values = unknowns_.values(best.u);
+  for (const VariableBlock& block : unknowns_.blocks()) {
+    if (block.count > 1) {
+      spdlog::info("  {}: {} weights", block.pointers.front(), block.count);
+      continue;
+    }
+    const std::string error = state_.standard_errors ? fmt::format(" ± {:.2g}", (*state_.standard_errors)[block.first]) : "";
+    for (const std::string& pointer : block.pointers) spdlog::info("  {} = {:.8g}{}", pointer, values.at(pointer).at(0), error);
+  }
+}
+
+}  // namespace jaxmpm

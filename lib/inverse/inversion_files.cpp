@@ -1,0 +1,151 @@
+#include "inverse/inversion_files.hpp"
+
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "core/provenance.hpp"
+#include "inverse/evaluation_record.hpp"
+#include "io/checkpoint.hpp"
+#include "io/files.hpp"
+#include "scene/model.hpp"
+
+namespace jaxmpm {
+namespace {
+
+using Json = nlohmann::ordered_json;
+constexpr std::uint64_t inversion_format = 1;
+const char* const kind = "jaxmpm inversion";
+
+const Variables& best_variables(const InversionState& state) {
+  const RecordedEvaluation* best = state.loss.best();
+  return best != nullptr ? best->u : state.unknowns.space().start;
+}
+
+/// Numbers of a block as JSON: one, or a list for a network.
+Json shown(const std::vector<double>& numbers, bool is_network) { return is_network ? Json(numbers) : Json(numbers.at(0)); }
+
+Json iteration_json(const Unknowns& unknowns, const RecordedEvaluation& evaluation) {
+  Json json{{"loss", evaluation.loss}, {"unknowns", Json::object()}};
+  for (const auto& [pointer, numbers] : unknowns.values(evaluation.u))
+    if (!deck::is_network(pointer)) json["unknowns"][pointer] = numbers.at(0);
+  json["forward_seconds"] = evaluation.forward_seconds;
+  json["gradient_seconds"] = evaluation.gradient_seconds;
+  return json;
+}
+
+Json unknowns_json(const InversionState& state) {
+  const Values values = state.unknowns.values(best_variables(state));
+  Json json = Json::object();
+  for (const VariableBlock& block : state.unknowns.blocks())
+    for (const std::string& pointer : block.pointers) {
+      const bool network = deck::is_network(pointer);
+      Json& entry = json[pointer];
+      entry["value"] = shown(values.at(pointer), network);
+      entry["standard_error"] = nullptr;
+      if (!state.standard_errors) continue;
+      const auto first = state.standard_errors->begin() + static_cast<std::ptrdiff_t>(block.first);
+      entry["standard_error"] = shown({first, first + static_cast<std::ptrdiff_t>(block.count)}, network);
+    }
+  return json;
+}
+
+std::string json_text(const InversionState& state) {
+  Json json{{"title", state.deck.title}, {"stopped", state.stopped}, {"iterations", Json::array()}};
+  for (const RecordedEvaluation& one : state.loss.evaluations())
+    if (one.is_iteration()) json["iterations"].push_back(iteration_json(state.unknowns, one));
+  json["unknowns"] = unknowns_json(state);
+  json["loss"] = state.loss.best() != nullptr ? Json(state.loss.best()->loss) : Json(nullptr);
+  json["evaluations"] = state.loss.evaluations().size();
+  json["gradient_peak_bytes"] = state.loss.peak_bytes();
+  json["version"] = provenance().version;
+  json["git_commit"] = provenance().git_commit;
+  return json.dump(2) + "\n";
+}
+
+void write_history(hdf5::Writer& file, const InversionState& state) {
+  std::vector<double> loss, forward, gradient;
+  std::map<std::string, std::vector<double>> numbers;
+  for (const RecordedEvaluation& one : state.loss.evaluations()) {
+    if (!one.is_iteration()) continue;
+    loss.push_back(one.loss);
+    forward.push_back(one.forward_seconds);
+    gradient.push_back(one.gradient_seconds);
+    for (const auto& [pointer, values] : state.unknowns.values(one.u))
+      if (!deck::is_network(pointer)) numbers[pointer].push_back(values.at(0));
+  }
+  file.dataset("/history/loss", {loss.size()}, loss);
+  file.dataset("/history/forward_seconds", {forward.size()}, forward);
+  file.dataset("/history/gradient_seconds", {gradient.size()}, gradient);
+  for (const auto& [pointer, values] : numbers) file.dataset("/unknowns" + pointer + "/history", {values.size()}, values);
+  for (const auto& [pointer, values] : state.unknowns.values(best_variables(state)))
+    file.dataset("/unknowns" + pointer + "/value", {values.size()}, values);
+}
+
+/// The initial fields with the best values: what an unknown velocity field has become.
+void write_fields(hdf5::Writer& file, const InversionState& state) {
+  const Model model = build_model(with_values(state.deck, state.unknowns.values(best_variables(state))));
+  const auto dim = static_cast<std::size_t>(model.dim);
+  for (const Body& body : model.bodies) {
+    const BodyState& initial = body.initial;
+    std::vector<double> position, velocity;
+    for (std::size_t p = 0; p < initial.id.size(); ++p)
+      for (std::size_t d = 0; d < dim; ++d) {
+        position.push_back(model.domain_min[d] + model.cell_size * initial.position[p][d]);
+        velocity.push_back(initial.velocity[p][d]);
+      }
+    const std::string group = "/bodies/" + body.name;
+    file.dataset(group + "/id", "u4", {initial.id.size()}, initial.id.data());
+    file.dataset(group + "/position", {initial.id.size(), dim}, position);
+    file.attribute(group + "/position", "units", std::string("m"));
+    file.dataset(group + "/velocity", {initial.id.size(), dim}, velocity);
+    file.attribute(group + "/velocity", "units", std::string("m/s"));
+  }
+}
+
+void write_h5(const std::string& path, const InversionState& state) {
+  hdf5::Writer file(path);
+  file.attribute("/", "kind", std::string(kind));
+  file.attribute("/", "format", inversion_format);
+  file.attribute("/", "version", provenance().version);
+  file.attribute("/", "git_commit", provenance().git_commit);
+  file.attribute("/", "title", state.deck.title);
+  file.attribute("/", "stopped", state.stopped);
+  file.text("/deck_resolved", state.deck.resolved);
+  write_history(file, state);
+  write_fields(file, state);
+  write_evaluations(file, state.loss.evaluations());
+  file.finish();
+}
+
+}  // namespace
+
+bool InversionDirectory::holds_inversion() const { return std::filesystem::exists(json()) || std::filesystem::exists(h5()); }
+
+void InversionDirectory::prepare() const { make_directory(path_); }
+
+void InversionDirectory::clear() const {
+  for (const std::string& file : {json(), h5()}) {
+    std::error_code failed;
+    std::filesystem::remove(file, failed);
+    if (failed) throw IoError("cannot remove '" + file + "': " + failed.message() + ".");
+  }
+}
+
+void InversionDirectory::write(const InversionState& state) const {
+  write_h5(h5(), state);
+  write_file(json(), json_text(state));
+}
+
+std::vector<RecordedEvaluation> InversionDirectory::read(const deck::Deck& deck, const Unknowns& unknowns) const {
+  if (!std::filesystem::exists(h5())) return {};
+  const hdf5::Reader file(h5());
+  if (file.text_attribute("/", "kind") != kind || file.count_attribute("/", "format") != inversion_format)
+    throw IoError("'" + h5() + "' is no inversion of format " + std::to_string(inversion_format) +
+                  "; resume with the version of jaxmpm that wrote it.");
+  require_same_deck(file.text("/deck_resolved"), deck.resolved, h5(),
+                    {"/output", "/inverse/memory", "/inverse/optimizer/iterations", "/inverse/optimizer/tolerance"});
+  return read_evaluations(file, unknowns.size());
+}
+
+}  // namespace jaxmpm
