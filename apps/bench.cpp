@@ -44,6 +44,7 @@ void add_bench(CLI::App& app, Chosen& chosen) {
   CLI::App* command = app.add_subcommand("bench", "Measure the cost of steps, without output");
   auto options = std::make_shared<BenchOptions>();
   add_deck_options(*command, *options);
+  add_backend_option(*command, *options);
   command->add_option("--steps", options->steps, "Steps to measure")
       ->required()
       ->check(CLI::Range(std::uint64_t(1), std::uint64_t(1) << 40))

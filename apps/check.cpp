@@ -83,6 +83,7 @@ void add_check(CLI::App& app, Chosen& chosen) {
   CLI::App* command = app.add_subcommand("check", "Check a deck: all errors, particles, memory, time step, estimated time");
   auto options = std::make_shared<DeckOptions>();
   add_deck_options(*command, *options);
+  add_backend_option(*command, *options);
   command->callback([&chosen, options] { chosen = [options](const CommonOptions&) { return check(*options); }; });
 }
 

@@ -32,12 +32,16 @@ using Chosen = std::function<int(const CommonOptions&)>;
 
 void add_common_options(CLI::App& app, CommonOptions& options);
 void add_deck_options(CLI::App& app, DeckOptions& options);
+/// For commands that run on any backend; gradients are computed on the CPU.
+void add_backend_option(CLI::App& app, DeckOptions& options);
 /// The backend asked for, or the best one of this build.
 Backend chosen_backend(const DeckOptions& options);
 
 void add_run(CLI::App& app, Chosen& chosen);
 void add_check(CLI::App& app, Chosen& chosen);
 void add_bench(CLI::App& app, Chosen& chosen);
+void add_invert(CLI::App& app, Chosen& chosen);
+void add_gradient(CLI::App& app, Chosen& chosen);
 void add_schema(CLI::App& app, Chosen& chosen);
 void add_info(CLI::App& app, Chosen& chosen);
 

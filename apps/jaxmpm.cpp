@@ -35,14 +35,14 @@ int guarded(const Chosen& chosen, const CommonOptions& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Material point method: forward simulation from one deck.", "jaxmpm");
+  CLI::App app("Material point method: forward simulation and calibration from one deck.", "jaxmpm");
   app.set_version_flag("--version", provenance().version);
   app.require_subcommand(1);
   app.fallthrough();
   CommonOptions options;
   Chosen chosen;
   add_common_options(app, options);
-  for (const auto add : {add_run, add_check, add_bench, add_schema, add_info}) add(app, chosen);
+  for (const auto add : {add_run, add_invert, add_check, add_gradient, add_bench, add_schema, add_info}) add(app, chosen);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

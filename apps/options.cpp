@@ -15,6 +15,9 @@ void add_deck_options(CLI::App& app, DeckOptions& options) {
       ->type_name("POINTER=JSON")
       ->allow_extra_args(false);
   app.add_option("--threads", options.threads, "Host threads; default: all cores")->check(CLI::Range(1, 4096))->type_name("N");
+}
+
+void add_backend_option(CLI::App& app, DeckOptions& options) {
   app.add_option("--backend", options.backend, "cpu or cuda; default: cuda where the program was built for it")
       ->check(CLI::IsMember({"cpu", "cuda"}))
       ->type_name("NAME");

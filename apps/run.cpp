@@ -175,6 +175,7 @@ void add_run(CLI::App& app, Chosen& chosen) {
   CLI::App* command = app.add_subcommand("run", "Run a deck and write its results");
   auto options = std::make_shared<RunOptions>();
   add_deck_options(*command, *options);
+  add_backend_option(*command, *options);
   command->add_option("-o,--output", options->directory, "Results directory, instead of the deck's")->type_name("DIR");
   CLI::Option* overwrite = command->add_flag("--overwrite", options->overwrite, "Replace results that are there");
   command

@@ -140,4 +140,12 @@ std::vector<std::string> assignments(const Values& values) {
   return list;
 }
 
+deck::Deck with_values(const deck::Deck& deck, const Values& values) {
+  deck::Deck plain = deck;
+  auto text = nlohmann::ordered_json::parse(deck.resolved);
+  text.erase("inverse");
+  plain.resolved = text.dump();
+  return deck::with_assignments(plain, assignments(values));
+}
+
 }  // namespace jaxmpm

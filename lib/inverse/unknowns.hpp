@@ -65,7 +65,11 @@ class Unknowns {
   SearchSpace space_;
 };
 
-/// What makes with_assignments() or `--set` give a deck these values.
+/// What makes `--set` give a deck these values.
 std::vector<std::string> assignments(const Values& values);
+
+/// The deck with these values, read and checked anew, and without /inverse, which asks where a search starts and is done with. Throws
+/// DeckError for values that the deck does not allow.
+deck::Deck with_values(const deck::Deck& deck, const Values& values);
 
 }  // namespace jaxmpm

@@ -1,0 +1,145 @@
+// jaxmpm gradient: loss and gradient of a deck at the start of its unknowns, and whether the gradient is right.
+#include <spdlog/fmt/fmt.h>
+
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "commands.hpp"
+#include "core/error.hpp"
+#include "core/runtime.hpp"
+#include "core/signals.hpp"
+#include "inverse/gradient_check.hpp"
+#include "inverse/run_objective.hpp"
+
+namespace jaxmpm {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct GradientOptions : DeckOptions {
+  bool check = false, json = false;
+  std::size_t directions = 5;
+  std::uint64_t seed = 1;
+};
+
+Json gradient_json(const Evaluation& at, const Unknowns& unknowns) {
+  Json json{{"loss", at.loss}, {"gradient", Json::object()}};
+  for (const std::string& pointer : unknowns.pointers()) {
+    const std::vector<double>& numbers = at.gradient.at(pointer);
+    json["gradient"][pointer] = deck::is_network(pointer) ? Json(numbers) : Json(numbers.at(0));
+  }
+  return json;
+}
+
+Json check_json(const GradientCheck& check) {
+  Json json{
+      {"verdict", check.good ? "good" : "bad"}, {"summary", check.verdict}, {"directions", Json::array()}, {"unknowns", Json::object()}};
+  for (const DirectionCheck& one : check.directions)
+    json["directions"].push_back({{"derivative", one.derivative},
+                                  {"difference", one.difference},
+                                  {"dot_product", one.dot_product},
+                                  {"slope", one.slope},
+                                  {"steps", one.step},
+                                  {"remainders", one.remainder}});
+  for (const VariableCheck& one : check.variables)
+    json["unknowns"][one.label] = {{"derivative", one.derivative}, {"difference", one.difference}, {"relative_error", one.error}};
+  json["particle_steps"] = check.particle_steps;
+  json["particle_steps_at_kinks"] = check.particles_at_kinks;
+  return json;
+}
+
+void print_gradient(const Evaluation& at, const Unknowns& unknowns) {
+  std::cout << fmt::format("loss {:.9e}\n", at.loss);
+  for (const std::string& pointer : unknowns.pointers()) {
+    const std::vector<double>& numbers = at.gradient.at(pointer);
+    double square = 0;
+    for (const double g : numbers) square += g * g;
+    if (deck::is_network(pointer))
+      std::cout << fmt::format("{}: {} weights, |gradient| {:.9e}\n", pointer, numbers.size(), std::sqrt(square));
+    else std::cout << fmt::format("{}  {:.9e}\n", pointer, numbers.at(0));
+  }
+}
+
+void print_directions(const GradientCheck& check) {
+  std::cout << "\nTaylor remainders |L(u + ε d) − L(u) − ε g·d| along random directions d; they fall as ε² where g is right\n      ε   ";
+  for (std::size_t k = 0; k < check.directions.size(); ++k) std::cout << fmt::format("  direction {}", k + 1);
+  std::cout << '\n';
+  const std::size_t steps = check.directions.empty() ? 0 : check.directions[0].step.size();
+  for (std::size_t s = 0; s < steps; ++s) {
+    std::cout << fmt::format("{:10.2e}", check.directions[0].step[s]);
+    for (const DirectionCheck& one : check.directions) std::cout << fmt::format("  {:11.3e}", one.remainder[s]);
+    std::cout << '\n';
+  }
+  const auto line = [&check](const char* name, double DirectionCheck::*member, const char* format) {
+    std::cout << fmt::format("{:<10}", name);
+    for (const DirectionCheck& one : check.directions) std::cout << fmt::format(fmt::runtime(format), one.*member);
+    std::cout << '\n';
+  };
+  line("slope", &DirectionCheck::slope, "  {:11.3f}");
+  std::cout << "\nDerivative along d: g·d by the adjoint, difference of losses, and dot product <J d, r> by differences of residuals\n";
+  line("adjoint", &DirectionCheck::derivative, "  {:14.7e}");
+  line("difference", &DirectionCheck::difference, "  {:14.7e}");
+  line("dot prod.", &DirectionCheck::dot_product, "  {:14.7e}");
+}
+
+void print_check(const GradientCheck& check) {
+  print_directions(check);
+  std::cout << "\nDerivative by each variable (of the transformed number, with priors): adjoint, difference, relative error\n";
+  for (const VariableCheck& one : check.variables)
+    std::cout << fmt::format("{:<48}  {:14.7e}  {:14.7e}  {:8.1e}\n", one.label, one.derivative, one.difference, one.error);
+  const double share =
+      check.particle_steps > 0 ? static_cast<double>(check.particles_at_kinks) / static_cast<double>(check.particle_steps) : 0;
+  std::cout << fmt::format("\nparticles at kinks: {} of {} particle-steps ({:.2g} %)\nVERDICT: {}\n", check.particles_at_kinks,
+                           check.particle_steps, 100 * share, check.verdict);
+}
+
+int gradient(const GradientOptions& options) {
+  const deck::Deck deck = deck::read_deck(options.deck, options.assignments);
+  const Unknowns unknowns(deck);
+  RunObjective objective(deck, unknowns.pointers(), [] { return stop_signal() != 0; });
+  const Values start = unknowns.values(unknowns.space().start);
+  objective.renew_steps(start);
+  const Evaluation at = objective.gradient(start);
+  Json json = gradient_json(at, unknowns);
+  if (!options.json) print_gradient(at, unknowns);
+  bool good = true;
+  if (options.check) {
+    const GradientCheck check = check_gradient(unknowns, objective, options.directions, options.seed);
+    good = check.good;
+    json["check"] = check_json(check);
+    if (!options.json) print_check(check);
+  }
+  if (options.json) std::cout << json.dump() << '\n';
+  return static_cast<int>(good ? ExitCode::done : ExitCode::bad_verdict);
+}
+
+}  // namespace
+
+void add_gradient(CLI::App& app, Chosen& chosen) {
+  CLI::App* command = app.add_subcommand("gradient", "Loss and gradient of a deck at the start of its unknowns");
+  auto options = std::make_shared<GradientOptions>();
+  add_deck_options(*command, *options);
+  CLI::Option* check = command->add_flag("--check", options->check, "Compare the gradient with forward runs, and give a verdict");
+  command->add_option("--directions", options->directions, "Random directions of the check")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str()
+      ->needs(check)
+      ->type_name("N");
+  command->add_option("--seed", options->seed, "Of the random directions")->capture_default_str()->needs(check)->type_name("N");
+  command->add_flag("--json", options->json, "Print one JSON object");
+  command->callback([&chosen, options] {
+    chosen = [options](const CommonOptions&) {
+      watch_signals();
+      const Runtime runtime(options->threads);
+      try {
+        return gradient(*options);
+      } catch (const Stopped&) {
+        spdlog::info("Stopped; nothing is kept.");
+        return static_cast<int>(ExitCode::stopped);
+      }
+    };
+  });
+}
+
+}  // namespace jaxmpm

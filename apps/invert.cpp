@@ -1,0 +1,86 @@
+// jaxmpm invert: finds the unknowns of a deck from its observations.
+#include <chrono>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "commands.hpp"
+#include "core/error.hpp"
+#include "core/runtime.hpp"
+#include "core/signals.hpp"
+#include "inverse/inversion.hpp"
+#include "inverse/run_objective.hpp"
+
+namespace jaxmpm {
+namespace {
+
+struct InvertOptions : DeckOptions {
+  std::optional<std::string> directory, resume;
+  bool overwrite = false;
+  double max_walltime = 0;  // min
+};
+
+deck::Deck read(const InvertOptions& options) {
+  std::vector<std::string> assignments = options.assignments;
+  if (options.directory) assignments.push_back("/output/directory=" + nlohmann::json(*options.directory).dump());
+  return deck::read_deck(options.deck, assignments);
+}
+
+/// A signal, or the end of the wall time.
+std::function<bool()> stop_request(double minutes) {
+  const auto start = std::chrono::steady_clock::now();
+  return [start, minutes] {
+    const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start;
+    return stop_signal() != 0 || (minutes > 0 && passed.count() >= 60 * minutes);
+  };
+}
+
+void refuse_to_overwrite(const InvertOptions& options, const InversionDirectory& directory) {
+  if (options.resume || options.overwrite || !directory.holds_inversion()) return;
+  throw IoError("'" + directory.path() +
+                "' holds an inversion. Continue it with --resume auto, replace it with --overwrite, or choose another directory with -o.");
+}
+
+int invert(const InvertOptions& options) {
+  const deck::Deck deck = read(options);
+  const InversionDirectory directory(deck.output.directory);
+  refuse_to_overwrite(options, directory);
+  const Unknowns unknowns(deck);
+  std::vector<RecordedEvaluation> before;
+  if (options.resume) before = directory.read(deck, unknowns);
+  if (options.resume && before.empty()) spdlog::info("There is no inversion in '{}': it starts at the beginning.", directory.path());
+  RunObjective objective(deck, unknowns.pointers(), stop_request(options.max_walltime));
+  Inversion inversion(deck, unknowns, objective, directory, std::move(before));
+  directory.prepare();
+  if (options.overwrite) directory.clear();
+  spdlog::info("{}: {} unknowns, {} threads, results in '{}'", deck.title.empty() ? options.deck : deck.title, unknowns.size(),
+               thread_count(), directory.path());
+  if (inversion.run()) return static_cast<int>(ExitCode::done);
+  spdlog::info("Stopped. Continue with: jaxmpm invert {} --resume auto (and the same -o and --set)", options.deck);
+  return static_cast<int>(ExitCode::stopped);
+}
+
+}  // namespace
+
+void add_invert(CLI::App& app, Chosen& chosen) {
+  CLI::App* command = app.add_subcommand("invert", "Find the unknowns of a deck from its observations");
+  auto options = std::make_shared<InvertOptions>();
+  add_deck_options(*command, *options);
+  command->add_option("-o,--output", options->directory, "Results directory, instead of the deck's")->type_name("DIR");
+  CLI::Option* overwrite = command->add_flag("--overwrite", options->overwrite, "Replace an inversion that is there");
+  command->add_option("--resume", options->resume, "Continue the inversion of the directory, or start at the beginning")
+      ->check(CLI::IsMember({"auto"}))
+      ->type_name("auto")
+      ->excludes(overwrite);
+  command->add_option("--max-walltime", options->max_walltime, "Stop after this many minutes, to be continued")
+      ->check(CLI::PositiveNumber)
+      ->type_name("MIN");
+  command->callback([&chosen, options] {
+    chosen = [options](const CommonOptions&) {
+      watch_signals();
+      const Runtime runtime(options->threads);
+      return invert(*options);
+    };
+  });
+}
+
+}  // namespace jaxmpm

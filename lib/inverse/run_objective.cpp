@@ -1,0 +1,99 @@
+#include "inverse/run_objective.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <chrono>
+#include <cmath>
+
+#include "core/error.hpp"
+#include "inverse/observations.hpp"
+#include "inverse/scene_gradient.hpp"
+
+namespace jaxmpm {
+namespace {
+
+/// "4 GiB" in bytes.
+std::size_t bytes_of(const std::string& amount) {
+  std::size_t end = 0;
+  const double number = std::stod(amount, &end);
+  const std::string unit = amount.substr(amount.find_first_not_of(' ', end));
+  return static_cast<std::size_t>(std::ldexp(number, unit == "MiB" ? 20 : unit == "GiB" ? 30 : 40));
+}
+
+class Watch {
+ public:
+  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace
+
+RunObjective::RunObjective(const deck::Deck& deck, std::vector<std::string> pointers, std::function<bool()> stop)
+    : deck_(with_values(deck, {})),
+      pointers_(std::move(pointers)),
+      memory_(bytes_of(deck::inverse_of(deck).memory)),
+      stop_(std::move(stop)) {
+  const Model model = build_model(deck);
+  for (const std::string& notice : model.notices) spdlog::info("Note: {}", notice);
+  observer_ = make_observer(deck, model);
+}
+
+Evaluation RunObjective::loss(const Values& values) {
+  const Model model = build_model(with_values(deck_, values));
+  const Watch watch;
+  replay_run(model, steps_, *observer_, stop_);
+  Evaluation found;
+  found.loss = observer_->loss();
+  found.forward_seconds = watch.seconds();
+  return found;
+}
+
+Evaluation RunObjective::gradient(const Values& values) {
+  const deck::Deck deck = with_values(deck_, values);
+  const Model model = build_model(deck);
+  const MemoryPlan plan = plan_gradient(model, steps_, memory_);
+  tell_plan(plan);
+  RunCost cost;
+  const ModelGradient by_model = differentiate_run(model, steps_, *observer_, plan, cost, stop_);
+  const Watch watch;
+  Evaluation found;
+  found.loss = observer_->loss();
+  found.gradient = gradient_by_pointer(deck, model, by_model, pointers_);
+  found.forward_seconds = cost.forward_seconds;
+  found.gradient_seconds = cost.reverse_seconds + watch.seconds();
+  found.peak_bytes = cost.measured_peak_bytes;
+  found.particles_at_kinks = cost.particles_at_kinks;
+  for (const Body& body : model.bodies) found.particle_steps += body.initial.id.size() * steps_.dt.size();
+  return found;
+}
+
+void RunObjective::renew_steps(const Values& values) {
+  const Model model = build_model(with_values(deck_, values));
+  const std::size_t before = steps_.dt.size();
+  steps_ = record_run(model, *observer_, stop_);
+  if (before > 0) spdlog::info("Time steps renewed: {}, before {}.", steps_.dt.size(), before);
+}
+
+bool RunObjective::admits(const Values& values) const {
+  try {
+    with_values(deck_, values);
+    return true;
+  } catch (const DeckError&) {
+    return false;
+  }
+}
+
+void RunObjective::tell_plan(const MemoryPlan& plan) {
+  if (plan_told_) return;
+  plan_told_ = true;
+  constexpr double mib = 1 << 20;
+  spdlog::info(
+      "Gradient of {} steps: {} snapshots of {:.3g} MiB kept at once, {:.3g} steps computed again; predicted peak {:.4g} MiB of {:.4g} "
+      "MiB.",
+      plan.steps, plan.snapshots, static_cast<double>(plan.snapshot_bytes) / mib, plan.recomputed_steps,
+      static_cast<double>(plan.peak_bytes) / mib, static_cast<double>(memory_) / mib);
+}
+
+}  // namespace jaxmpm
