@@ -1,10 +1,13 @@
-// jaxmpm bench: the cost of steps alone, without output, after a warm-up.
+// jaxmpm bench: the cost of steps alone, without output, after a warm-up; and of a gradient over as many.
 #include <chrono>
 #include <iostream>
 #include <memory>
 
 #include "commands.hpp"
+#include "core/error.hpp"
 #include "core/runtime.hpp"
+#include "inverse/differentiated_run.hpp"
+#include "inverse/run_objective.hpp"
 #include "io/summary.hpp"
 
 namespace jaxmpm {
@@ -12,12 +15,64 @@ namespace {
 
 struct BenchOptions : DeckOptions {
   std::uint64_t steps = 0, warm_up = 0;
-  bool json = false;
+  bool json = false, gradient = false;
 };
 
-/// Takes steps as a run would, but never to an end.
-void take(Solver& solver, const deck::Time& time, std::uint64_t steps) {
-  for (std::uint64_t n = 0; n < steps; ++n) solver.step(time.step ? *time.step : solver.stable_step());
+/// Takes steps as a run would, but never to an end; returns their lengths, s.
+std::vector<double> take(Solver& solver, const deck::Time& time, std::uint64_t steps) {
+  std::vector<double> taken(steps);
+  for (double& dt : taken) {
+    dt = time.step ? *time.step : solver.stable_step();
+    solver.step(dt);
+  }
+  return taken;
+}
+
+/// Half the sum of squares of all final coordinates: a loss that needs the whole run and costs next to nothing itself.
+class FinalPositions : public Observer {
+ public:
+  explicit FinalPositions(double end) : times_{end} {}
+  const std::vector<double>& times() const override { return times_; }
+  FieldSelection needs() const override { return {}; }
+  void look(std::size_t, const Moment&, const std::vector<BodySnapshot>& bodies) override {
+    seen_.assign(bodies.size(), {});
+    residuals_.clear();
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+      seen_[b].position = bodies[b].position;
+      residuals_.insert(residuals_.end(), bodies[b].position.begin(), bodies[b].position.end());
+    }
+  }
+  double loss() const override {
+    double sum = 0;
+    for (const double x : residuals_) sum += x * x;
+    return sum / 2;
+  }
+  const std::vector<double>& residuals() const override { return residuals_; }
+  SnapshotGradient gradient(std::size_t) const override { return seen_; }
+
+ private:
+  std::vector<double> times_, residuals_;
+  SnapshotGradient seen_;
+};
+
+/// The gradient of the first `dt.size()` steps, within the deck's memory.
+nlohmann::ordered_json bench_gradient(const Model& model, const std::string& memory, std::vector<double> dt, double plain_seconds) {
+  double end = 0;
+  for (const double step : dt) end += step;
+  FinalPositions observer(end);
+  const StepSequence steps{dt, {dt.size()}};
+  const MemoryPlan plan = plan_gradient(model, steps, bytes_of(memory));
+  RunCost cost;
+  differentiate_run(model, steps, observer, plan, cost, {});
+  const double seconds = cost.forward_seconds + cost.reverse_seconds;
+  return {{"forward_seconds", cost.forward_seconds},
+          {"reverse_seconds", cost.reverse_seconds},
+          {"seconds_per_1000_steps", 1000 * seconds / static_cast<double>(dt.size())},
+          {"times_plain_run", seconds / plain_seconds},
+          {"snapshots", plan.snapshots},
+          {"recomputed_steps", plan.recomputed_steps},
+          {"predicted_peak_bytes", plan.peak_bytes},
+          {"measured_peak_bytes", cost.measured_peak_bytes}};
 }
 
 PhaseSeconds operator-(const PhaseSeconds& a, const PhaseSeconds& b) {
@@ -26,22 +81,32 @@ PhaseSeconds operator-(const PhaseSeconds& a, const PhaseSeconds& b) {
 
 nlohmann::ordered_json bench(const BenchOptions& options) {
   const Runtime runtime(options.threads);
-  Model model = build_model(deck::read_deck(options.deck, options.assignments));
+  const deck::Deck deck = deck::read_deck(options.deck, options.assignments);
+  Model model = build_model(deck);
   const Backend backend = chosen_backend(options);
-  const auto solver = make_solver(model, backend);
-  for (Body& body : model.bodies) body.initial = {};
-  take(*solver, model.time, options.warm_up);
+  if (options.gradient && backend != Backend::cpu) throw Error(ExitCode::deck, "gradients are computed on the CPU: give --backend cpu.");
+  auto solver = make_solver(model, backend);
+  if (!options.gradient)
+    for (Body& body : model.bodies) body.initial = {};
+  std::vector<double> dt = take(*solver, model.time, options.warm_up);
   const PhaseSeconds before = solver->phase_seconds();
   const auto begin = std::chrono::steady_clock::now();
-  take(*solver, model.time, options.steps);
+  const std::vector<double> measured = take(*solver, model.time, options.steps);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  return cost_summary(model, *solver, backend, options.steps, seconds, solver->phase_seconds() - before);
+  nlohmann::ordered_json result = cost_summary(model, *solver, backend, options.steps, seconds, solver->phase_seconds() - before);
+  if (!options.gradient) return result;
+  solver.reset();
+  dt.insert(dt.end(), measured.begin(), measured.end());
+  dt.resize(options.steps);
+  result["gradient"] =
+      bench_gradient(model, deck.inverse.empty() ? deck::Inverse{}.memory : deck::inverse_of(deck).memory, std::move(dt), seconds);
+  return result;
 }
 
 }  // namespace
 
 void add_bench(CLI::App& app, Chosen& chosen) {
-  CLI::App* command = app.add_subcommand("bench", "Measure the cost of steps, without output");
+  CLI::App* command = app.add_subcommand("bench", "Measure the cost of steps and of their gradient, without output");
   auto options = std::make_shared<BenchOptions>();
   add_deck_options(*command, *options);
   add_backend_option(*command, *options);
@@ -51,6 +116,7 @@ void add_bench(CLI::App& app, Chosen& chosen) {
       ->type_name("N");
   options->warm_up = 5;
   command->add_option("--warm-up", options->warm_up, "Steps before that, not counted")->capture_default_str()->type_name("N");
+  command->add_flag("--gradient", options->gradient, "Also measure the gradient of as many steps, from the start of the run");
   command->add_flag("--json", options->json, "Print one JSON object");
   command->callback([&chosen, options] {
     chosen = [options](const CommonOptions&) {

@@ -12,14 +12,6 @@
 namespace jaxmpm {
 namespace {
 
-/// "4 GiB" in bytes.
-std::size_t bytes_of(const std::string& amount) {
-  std::size_t end = 0;
-  const double number = std::stod(amount, &end);
-  const std::string unit = amount.substr(amount.find_first_not_of(' ', end));
-  return static_cast<std::size_t>(std::ldexp(number, unit == "MiB" ? 20 : unit == "GiB" ? 30 : 40));
-}
-
 class Watch {
  public:
   double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
@@ -29,6 +21,13 @@ class Watch {
 };
 
 }  // namespace
+
+std::size_t bytes_of(const std::string& amount) {
+  std::size_t end = 0;
+  const double number = std::stod(amount, &end);
+  const std::string unit = amount.substr(amount.find_first_not_of(' ', end));
+  return static_cast<std::size_t>(std::ldexp(number, unit == "MiB" ? 20 : unit == "GiB" ? 30 : 40));
+}
 
 RunObjective::RunObjective(const deck::Deck& deck, std::vector<std::string> pointers, std::function<bool()> stop)
     : deck_(with_values(deck, {})),

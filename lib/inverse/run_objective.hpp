@@ -32,4 +32,7 @@ class RunObjective : public Objective {
   bool plan_told_ = false;
 };
 
+/// Bytes of an amount as /inverse/memory gives it: "4 GiB".
+std::size_t bytes_of(const std::string& amount);
+
 }  // namespace jaxmpm
