@@ -1,4 +1,4 @@
-"""Pictures and an animation of any results.h5 of jaxmpm: frames.png, last.png, gauges.png and animation.gif."""
+"""Pictures and an animation of any results.h5 of jaxmpm: frames.png, last.png, gauges.png and animation.gif; of an inversion.json: inversion.png."""
 import argparse
 import pathlib
 import sys
@@ -7,6 +7,7 @@ import matplotlib
 import numpy as np
 
 import pictures
+import plot_inversion
 from results import Results
 
 matplotlib.use("Agg")
@@ -18,7 +19,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 def arguments():
     parser = argparse.ArgumentParser(prog="scripts/plot", description=__doc__)
-    parser.add_argument("results", help="results.h5, or the folder that holds it")
+    parser.add_argument("results", help="results.h5 or inversion.json, or the folder that holds it")
     parser.add_argument("--field", help="colour by this field: speed (default), pressure, plastic_strain, body, …")
     parser.add_argument("--times", type=float, nargs="+", metavar="S", help="times of frames.png, s (default: four over the run)")
     parser.add_argument("--range", type=float, nargs=2, metavar=("LOW", "HIGH"), help="range of the colours (default: that of all frames)")
@@ -116,6 +117,9 @@ def save(figure, path):
 
 def main():
     options = arguments()
+    inversion = plot_inversion.find(options.results)
+    if inversion:
+        return plot_inversion.main(inversion, options.out)
     try:
         results = Results(options.results)
     except (OSError, KeyError) as error:

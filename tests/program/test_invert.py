@@ -1,0 +1,224 @@
+"""jaxmpm invert and jaxmpm gradient: twin experiments, stopping and going on, refusals."""
+import json
+import random
+import signal
+import time
+import unittest
+
+import h5py
+import numpy as np
+
+from harness import DECK, DONE, IO, STOPPED, ProgramTest, small_deck, stop
+
+TRUTH = {"u0": 0.8, "friction": 0.3}
+
+
+def scene(u0, friction, **changes):
+    """A small dam break over a rough floor, of 144 particles and 250 steps, with a velocity that grows with the height."""
+    return small_deck(**{
+        "title": "twin",
+        "domain": {"min": [0, 0], "max": [1.0, 0.5], "cell_size": 0.05},
+        "time": {"end": 0.1, "step": 4e-4},
+        "parameters": {"u0": u0},
+        "materials": {"water": {"model": "newtonian", "density": 1000, "sound_speed": 20, "viscosity": 1.0}},
+        "bodies": [{"name": "water", "material": "water", "shape": {"box": {"min": [0, 0], "max": [0.3, 0.3]}}, "velocity": ["u0*y/0.3", 0]}],
+        "walls": {"y_min": {"kind": "friction", "coefficient": friction}},
+        "obstacles": [],
+        "gauges": {"front": {"kind": "front", "body": "water", "axis": "x", "quantile": 0.9}},
+        "output": {"interval": 0.004, "formats": ["hdf5"]},
+        **changes,
+    })
+
+
+UNKNOWNS = [{"path": "/parameters/u0", "bounds": [-2, 2]}, {"path": "/walls/y_min/coefficient", "bounds": [0, 1]}]
+
+
+def inverse(unknowns=None, observations=None, **optimizer):
+    return {
+        "unknowns": unknowns or UNKNOWNS,
+        "observations": observations or [{"kind": "particles", "body": "water", "field": "position", "file": "truth/results.h5", "from_time": 0.01}],
+        "optimizer": optimizer or {"method": "lbfgs", "iterations": 30},
+    }
+
+
+class InverseTest(ProgramTest):
+    """The truth is there; decks that look for it, and what they found."""
+
+    def setUp(self):
+        super().setUp()
+        self.run_deck(self.write(scene(**TRUTH), "truth.json"), "truth")
+
+    def deck(self, name="invert.json", u0=0.1, friction=0.05, **more):
+        changes = {key: more.pop(key) for key in ("time", "bodies", "walls") if key in more}
+        return self.write(scene(u0, friction, inverse=inverse(**more), **changes), name)
+
+    def invert(self, deck, out, *arguments, code=DONE, **more):
+        return self.expect(code, "invert", deck, "-o", out, "--threads", "1", *arguments, **more)
+
+    def result(self, out):
+        return json.loads((self.scratch / out / "inversion.json").read_text())
+
+    def findings(self, out):
+        """What an inversion found, without what it took."""
+        found = self.result(out)
+        found.pop("gradient_peak_bytes")
+        for one in found["iterations"]:
+            one.pop("forward_seconds"), one.pop("gradient_seconds")
+        return found
+
+    def assertFound(self, out, tolerance):
+        unknowns = self.result(out)["unknowns"]
+        self.assertLess(abs(unknowns["/parameters/u0"]["value"] - TRUTH["u0"]), tolerance)
+        self.assertLess(abs(unknowns["/walls/y_min/coefficient"]["value"] - TRUTH["friction"]), tolerance)
+
+
+class Invert(InverseTest):
+    def test_every_optimiser_finds_the_truth(self):
+        for method, tolerance in (({"method": "lbfgs", "iterations": 40}, 1e-4), ({"method": "gauss_newton", "iterations": 12}, 1e-5),
+                                  ({"method": "adam", "iterations": 120, "decay": 0.96}, 0.02)):
+            out = method["method"]
+            said = self.invert(self.deck(**method), out)
+            self.assertFound(out, tolerance)
+            self.assertIn("loss", said)
+            found = self.result(out)
+            self.assertIn(found["stopped"], ("converged", "iterations", "stalled"))
+            self.assertAlmostEqual(found["iterations"][0]["unknowns"]["/parameters/u0"], 0.1)
+            self.assertLess(found["loss"], 1e-4 * found["iterations"][0]["loss"])
+            with h5py.File(self.scratch / out / "inversion.h5") as file:
+                velocity = file["bodies/water/velocity"][...]
+                y = file["bodies/water/position"][...][:, 1]
+                self.assertLess(np.abs(velocity[:, 0] - TRUTH["u0"] * y / 0.3).max(), max(10 * tolerance, 1e-3))
+                self.assertEqual(len(file["history/loss"]), len(found["iterations"]))
+
+    def test_automatic_steps(self):
+        for method in ({"method": "lbfgs", "iterations": 40}, {"method": "adam", "iterations": 60, "decay": 0.95}):
+            out = "auto_" + method["method"]
+            said = self.invert(self.deck(time={"end": 0.1}, **method), out)
+            self.assertIn("steps renewed", said)
+            self.assertFound(out, 0.05)
+
+    def test_standard_errors_cover_the_truth_of_noisy_data(self):
+        observations = [{"kind": "particles", "body": "water", "field": "position", "file": "truth/results.h5", "from_time": 0.01,
+                         "noise": {"deviation": 2e-3, "seed": 4}}]
+        self.invert(self.deck(observations=observations, method="gauss_newton"), "noisy")
+        for pointer, truth in (("/parameters/u0", TRUTH["u0"]), ("/walls/y_min/coefficient", TRUTH["friction"])):
+            found = self.result("noisy")["unknowns"][pointer]
+            self.assertGreater(found["standard_error"], 1e-6)
+            self.assertLess(abs(found["value"] - truth), 3 * found["standard_error"])
+
+    def test_a_network_of_the_velocity(self):
+        body = [{"name": "water", "material": "water", "shape": {"box": {"min": [0, 0], "max": [0.3, 0.3]}},
+                 "velocity": [{"mlp": {"inputs": ["y"], "hidden": [6, 6], "activation": "tanh", "input_scale": [4]}}, 0]}]
+        self.invert(self.deck(unknowns=[{"path": "/bodies/0/velocity/0/mlp"}], bodies=body, friction=TRUTH["friction"], method="lbfgs", iterations=80), "net")
+        with h5py.File(self.scratch / "net" / "inversion.h5") as file:
+            velocity, y = file["bodies/water/velocity"][...][:, 0], file["bodies/water/position"][...][:, 1]
+        truth = TRUTH["u0"] * y / 0.3
+        self.assertLess(np.linalg.norm(velocity - truth) / np.linalg.norm(truth), 0.1)
+        found = self.result("net")
+        self.assertEqual(len(found["unknowns"]["/bodies/0/velocity/0/mlp"]["value"]), 61)
+        # The result goes into a run by --set.
+        weights = json.dumps(found["unknowns"]["/bodies/0/velocity/0/mlp"]["value"])
+        self.run_deck(self.scratch / "invert.json", "again", "--set", f"/bodies/0/velocity/0/mlp/weights={weights}")
+
+    def test_signals_and_wall_time(self):
+        deck = self.deck(method="adam", iterations=20)
+        begun = time.monotonic()
+        self.invert(deck, "whole")
+        seconds = time.monotonic() - begun
+        for number in (signal.SIGTERM, signal.SIGINT, signal.SIGUSR1):
+            out = f"out{number}"
+            process = self.start("invert", deck, "-o", out, "--threads", "1")
+            end = time.monotonic() + 60
+            while not (self.scratch / out / "inversion.json").exists() and process.poll() is None and time.monotonic() < end:
+                time.sleep(0.005)
+            code, said = stop(process, number)
+            self.assertEqual(code, STOPPED, said)
+            self.assertIn("--resume auto", said)
+            self.assertEqual(self.result(out)["stopped"], "stopped")
+            self.assertIn("gone through again", self.invert(deck, out, "--resume", "auto"))
+            self.assertEqual(self.findings(out), self.findings("whole"))
+        self.invert(deck, "timed", "--max-walltime", f"{seconds / 60 / 4:.7f}", code=STOPPED)
+        self.invert(deck, "timed", "--resume", "auto")
+        self.assertEqual(self.findings("timed"), self.findings("whole"))
+
+    def test_kill_at_any_moment(self):
+        for method in ({"method": "lbfgs", "iterations": 25}, {"method": "gauss_newton", "iterations": 8}):
+            deck = self.deck(**method)
+            begun = time.monotonic()
+            whole, out = "whole_" + method["method"], "out_" + method["method"]
+            self.invert(deck, whole)
+            seconds = time.monotonic() - begun
+            rng, kills = random.Random(1), 0
+            for _ in range(60):
+                process = self.start("invert", deck, "-o", out, "--threads", "1", "--resume", "auto")
+                try:
+                    process.communicate(timeout=rng.uniform(0.2, 0.6) * seconds)
+                except Exception:
+                    process.kill()
+                    process.communicate()
+                    kills += 1
+                if (self.scratch / out).exists():
+                    self.assertNoHalfFiles(out)
+                if process.returncode == DONE:
+                    break
+            self.invert(deck, out, "--resume", "auto")
+            self.assertGreater(kills, 1)
+            self.assertEqual(self.findings(out), self.findings(whole))
+
+    def test_the_same_bits_with_any_number_of_threads_and_any_memory(self):
+        deck = self.deck(method="lbfgs", iterations=6)
+        self.invert(deck, "one")
+        self.expect(DONE, "invert", deck, "-o", "two", "--threads", "2", "--set", "/inverse/memory=1 MiB")
+        self.assertEqual(self.findings("one"), self.findings("two"))
+
+    def test_refusals(self):
+        deck = self.deck(method="lbfgs", iterations=3)
+        self.invert(deck, "out")
+        self.assertIn("--resume auto", self.invert(deck, "out", code=IO))
+        self.invert(deck, "out", "--overwrite")
+        self.assertIn("/walls/y_min/coefficient", self.invert(self.deck(friction=0.2, method="lbfgs", iterations=3), "out", "--resume", "auto", code=DECK))
+        said = self.invert(self.deck(method="lbfgs", iterations=30), "out", "--resume", "auto")  # more iterations of the same
+        self.assertIn("gone through again", said)
+        self.assertIn("/inverse", self.expect(DECK, "invert", self.write(small_deck(), "plain.json")))
+        for unknown, words in (({"path": "/domain/cell_size"}, "cannot be an unknown"), ({"path": "/parameters/u0", "start": 3, "bounds": [0, 1]}, "outside of bounds")):
+            self.assertIn(words, self.invert(self.deck(unknowns=[unknown]), "none", code=DECK))
+        observation = {"kind": "particles", "body": "water", "field": "position", "file": "truth/results.h5", "select": {"ids": [9999]}}
+        self.assertIn("9999", self.invert(self.deck(observations=[observation]), "none", code=DECK))
+        late = {**observation, "select": "all", "from_time": 5}
+        self.assertIn("from_time", self.invert(self.deck(observations=[late]), "none", code=DECK))
+        self.assertIn("memory", self.invert(deck, "none", "--set", "/inverse/memory=0.001 MiB", code=DECK))
+        self.assertFalse((self.scratch / "none" / "inversion.json").exists())
+
+
+class Gradient(InverseTest):
+    def test_json(self):
+        done = self.call("gradient", self.deck(), "--json", "--threads", "1")
+        self.assertEqual(done.returncode, DONE, done.stderr)
+        found = json.loads(done.stdout)
+        self.assertEqual(sorted(found["gradient"]), ["/parameters/u0", "/walls/y_min/coefficient"])
+        h = 1e-5
+        losses = [json.loads(self.call("gradient", self.deck(), "--json", "--threads", "1", "--set", f"/parameters/u0={0.1 + s}").stdout)["loss"] for s in (-h, h)]
+        self.assertAlmostEqual((losses[1] - losses[0]) / (2 * h) / found["gradient"]["/parameters/u0"], 1, delta=1e-5)
+        self.assertIn("/walls/y_min/coefficient", self.expect(DONE, "gradient", self.deck(), "--threads", "1"))
+
+    def test_check(self):
+        done = self.call("gradient", self.deck(), "--check", "--json", "--threads", "1")
+        self.assertEqual(done.returncode, DONE, done.stdout + done.stderr)
+        check = json.loads(done.stdout)["check"]
+        self.assertEqual(check["verdict"], "good")
+        self.assertEqual(len(check["directions"]), 5)
+        self.assertLess(check["unknowns"]["/parameters/u0"]["relative_error"], 1e-5)
+        said = self.expect(DONE, "gradient", self.deck(), "--check", "--directions", "2", "--threads", "1")
+        for words in ("Taylor", "slope", "dot prod", "particles at kinks", "VERDICT: good"):
+            self.assertIn(words, said)
+
+    def test_bench(self):
+        done = self.call("bench", self.deck(), "--steps", "50", "--gradient", "--json", "--threads", "1")
+        self.assertEqual(done.returncode, DONE, done.stderr)
+        gradient = json.loads(done.stdout)["gradient"]
+        self.assertAlmostEqual(gradient["seconds_per_1000_steps"], 20 * (gradient["forward_seconds"] + gradient["reverse_seconds"]))
+        self.assertLessEqual(gradient["measured_peak_bytes"], 4 << 30)
+
+
+if __name__ == "__main__":
+    unittest.main()
