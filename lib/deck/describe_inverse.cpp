@@ -134,17 +134,22 @@ void describe(Description<ProfileObservation>& d) {
 
 void describe(Description<Adam>& d) {
   d.is("adam", "Gradient descent with adaptive moments.", "optimizer");
-  d.optional("learning_rate", &Adam::learning_rate).above(0);
+  d.optional("learning_rate", &Adam::learning_rate)
+      .above(0)
+      .help("How far a number (or its logarithm or logit) moves in the first iteration, in its own unit.");
   d.optional("decay", &Adam::decay).above(0).to(1).help("Factor on the learning rate after each iteration.");
   describe_stopping(d);
 }
 void describe(Description<Lbfgs>& d) {
-  d.is("lbfgs", "Quasi-Newton method of limited memory, with bounds.", "optimizer");
+  d.is("lbfgs", "Quasi-Newton method of limited memory, with bounds. Each gradient counts as an iteration, also those of line searches.",
+       "optimizer");
   d.optional("memory", &Lbfgs::memory).from(1).to(1000).help("Pairs of vectors kept.");
   describe_stopping(d);
 }
 void describe(Description<GaussNewton>& d) {
-  d.is("gauss_newton", "Gauss–Newton method, for few unknowns.", "optimizer");
+  d.is("gauss_newton",
+       "Damped Gauss–Newton method with differences of forward runs: for few unknowns, as each iteration takes two runs for each of them.",
+       "optimizer");
   describe_stopping(d);
 }
 
