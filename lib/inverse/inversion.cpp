@@ -112,8 +112,10 @@ void Inversion::find_standard_errors() {
 
 void Inversion::tell_result() const {
   const RecordedEvaluation& best = *loss_.best();
-  spdlog::info("{} after {} iterations and {} evaluations: loss {:.6e}", state_.stopped, iterations_, loss_.evaluations().size(),
-               best.loss);
+  const char* const ended = state_.stopped == "converged"    ? "Converged"
+                            : state_.stopped == "iterations" ? "Out of iterations"
+                                                             : "No step lowers the loss any more";
+  spdlog::info("{} after {} iterations and {} evaluations: loss {:.6e}", ended, iterations_, loss_.evaluations().size(), best.loss);
   const Values values = unknowns_.values(best.u);
   for (const VariableBlock& block : unknowns_.blocks()) {
     if (block.count > 1) {
@@ -123,6 +125,8 @@ void Inversion::tell_result() const {
     const std::string error = state_.standard_errors ? fmt::format(" ± {:.2g}", (*state_.standard_errors)[block.first]) : "";
     for (const std::string& pointer : block.pointers) spdlog::info("  {} = {:.8g}{}", pointer, values.at(pointer).at(0), error);
   }
+  constexpr double mib = 1 << 20;
+  if (loss_.peak_bytes() > 0) spdlog::info("Gradients kept {:.4g} MiB at most.", static_cast<double>(loss_.peak_bytes()) / mib);
 }
 
 }  // namespace jaxmpm
