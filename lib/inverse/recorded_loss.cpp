@@ -63,6 +63,8 @@ const RecordedEvaluation* RecordedLoss::best() const {
 }
 
 const RecordedEvaluation& RecordedLoss::evaluate(Kind kind, const Variables& u) {
+  // Standard errors came last, when the iterations were done; now there are more.
+  if (replaying() && kind != Kind::statistics && evaluations_[replayed_].kind == Kind::statistics) evaluations_.resize(replayed_);
   if (replaying()) return replay(kind, u);
   RecordedEvaluation fresh;
   fresh.kind = kind;

@@ -69,6 +69,7 @@ Evaluation RunObjective::gradient(const Values& values) {
 }
 
 void RunObjective::renew_steps(const Values& values) {
+  if (!steps_vary() && !steps_.dt.empty()) return;
   const Model model = build_model(with_values(deck_, values));
   const std::size_t before = steps_.dt.size();
   steps_ = record_run(model, *observer_, stop_);

@@ -49,7 +49,7 @@ class InverseTest(ProgramTest):
         self.run_deck(self.write(scene(**TRUTH), "truth.json"), "truth")
 
     def deck(self, name="invert.json", u0=0.1, friction=0.05, **more):
-        changes = {key: more.pop(key) for key in ("time", "bodies", "walls") if key in more}
+        changes = {key: more.pop(key) for key in ("time", "bodies", "parameters") if key in more}
         return self.write(scene(u0, friction, inverse=inverse(**more), **changes), name)
 
     def invert(self, deck, out, *arguments, code=DONE, **more):
@@ -91,9 +91,11 @@ class Invert(InverseTest):
                 self.assertEqual(len(file["history/loss"]), len(found["iterations"]))
 
     def test_automatic_steps(self):
-        for method in ({"method": "lbfgs", "iterations": 40}, {"method": "adam", "iterations": 60, "decay": 0.95}):
+        self.run_deck(self.write(scene(**TRUTH, time={"end": 0.1}), "truth_auto.json"), "truth_auto")
+        observations = [{"kind": "particles", "body": "water", "field": "position", "file": "truth_auto/results.h5", "from_time": 0.01}]
+        for method in ({"method": "lbfgs", "iterations": 60}, {"method": "adam", "iterations": 100, "decay": 0.96}):
             out = "auto_" + method["method"]
-            said = self.invert(self.deck(time={"end": 0.1}, **method), out)
+            said = self.invert(self.deck(time={"end": 0.1}, observations=observations, **method), out)
             self.assertIn("steps renewed", said)
             self.assertFound(out, 0.05)
 
@@ -107,9 +109,9 @@ class Invert(InverseTest):
             self.assertLess(abs(found["value"] - truth), 3 * found["standard_error"])
 
     def test_a_network_of_the_velocity(self):
-        body = [{"name": "water", "material": "water", "shape": {"box": {"min": [0, 0], "max": [0.3, 0.3]}},
+        bodies = [{"name": "water", "material": "water", "shape": {"box": {"min": [0, 0], "max": [0.3, 0.3]}},
                  "velocity": [{"mlp": {"inputs": ["y"], "hidden": [6, 6], "activation": "tanh", "input_scale": [4]}}, 0]}]
-        self.invert(self.deck(unknowns=[{"path": "/bodies/0/velocity/0/mlp"}], bodies=body, friction=TRUTH["friction"], method="lbfgs", iterations=80), "net")
+        self.invert(self.deck(unknowns=[{"path": "/bodies/0/velocity/0/mlp"}], bodies=bodies, parameters={}, friction=TRUTH["friction"], method="lbfgs", iterations=80), "net")
         with h5py.File(self.scratch / "net" / "inversion.h5") as file:
             velocity, y = file["bodies/water/velocity"][...][:, 0], file["bodies/water/position"][...][:, 1]
         truth = TRUTH["u0"] * y / 0.3
@@ -166,9 +168,9 @@ class Invert(InverseTest):
             self.assertEqual(self.findings(out), self.findings(whole))
 
     def test_the_same_bits_with_any_number_of_threads_and_any_memory(self):
-        deck = self.deck(method="lbfgs", iterations=6)
+        deck = self.deck(time={"end": 0.1, "step": 2e-4}, method="lbfgs", iterations=2)
         self.invert(deck, "one")
-        self.expect(DONE, "invert", deck, "-o", "two", "--threads", "2", "--set", "/inverse/memory=1 MiB")
+        self.expect(DONE, "invert", deck, "-o", "two", "--threads", "2", "--set", "/inverse/memory=43 MiB")
         self.assertEqual(self.findings("one"), self.findings("two"))
 
     def test_refusals(self):
@@ -186,7 +188,7 @@ class Invert(InverseTest):
         self.assertIn("9999", self.invert(self.deck(observations=[observation]), "none", code=DECK))
         late = {**observation, "select": "all", "from_time": 5}
         self.assertIn("from_time", self.invert(self.deck(observations=[late]), "none", code=DECK))
-        self.assertIn("memory", self.invert(deck, "none", "--set", "/inverse/memory=0.001 MiB", code=DECK))
+        self.assertIn("memory", self.invert(self.deck(), "none", "--set", "/inverse/memory=0.001 MiB", code=DECK))
         self.assertFalse((self.scratch / "none" / "inversion.json").exists())
 
 
