@@ -86,7 +86,7 @@ TEST_CASE("inversion.json and inversion.h5 hold iterations, unknowns with standa
 
 TEST_CASE("An inversion that is stopped or killed at every evaluation ends as one that is not") {
   for (const std::string& optimizer : {lbfgs, std::string(R"(, "optimizer": { "method": "adam", "iterations": 25 })"),
-                                      std::string(R"(, "optimizer": { "method": "gauss_newton" })")}) {
+                                       std::string(R"(, "optimizer": { "method": "gauss_newton" })")}) {
     const InverseDeck own(gravity + optimizer);
     const InversionDirectory whole(own.folder() + "/whole");
     GravityObjective plain;

@@ -106,8 +106,8 @@ TEST_CASE("the adjoint of a step is the transpose of its derivative: schemes") {
           const Model model = busy_scene(dim, method, water(0.5), sand(), deck::ContactKind::friction);
           INFO(dim << "D, " << int(basis) << " basis, " << int(transfer) << " transfer, " << int(gradient) << " gradient");
           const double off = mismatch(model, dt);
-        CAPTURE(off);
-        CHECK(off < tolerance);
+          CAPTURE(off);
+          CHECK(off < tolerance);
         }
 }
 
