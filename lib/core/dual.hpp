@@ -14,7 +14,7 @@ struct Dual {
   T value{};
   T derivative[N]{};
 
-  JAXMPM_INLINE Dual() = default;
+  Dual() = default;
   /// A constant: derivatives zero.
   template <class A, class = std::enable_if_t<std::is_arithmetic_v<A> || std::is_same_v<A, T>>>
   JAXMPM_INLINE Dual(const A& constant) : value(constant) {}  // implicit, so that constants mix with dual numbers
