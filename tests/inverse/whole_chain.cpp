@@ -49,7 +49,7 @@ TEST_CASE("the loss of a deck's observations by numbers of the deck") {
   const auto observer = make_observer(deck, model);
   const StepSequence steps = record_run(model, *observer, {});
   CHECK(steps.dt.size() == 200);
-  MemoryPlan plan = plan_gradient(model, steps, 1 << 28);
+  MemoryPlan plan = plan_gradient(model, steps, std::size_t(1) << 32);
   RunCost cost;
   const ModelGradient gradient = differentiate_run(model, steps, *observer, plan, cost, {});
   CHECK(observer->loss() > 0);
