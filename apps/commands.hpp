@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/logging.hpp"
+#include "deck/deck.hpp"
 #include "solvers/solver.hpp"
 
 namespace jaxmpm {
@@ -26,6 +27,15 @@ struct DeckOptions {
   std::optional<int> threads;
   std::optional<std::string> backend;
 };
+
+/// A deck whose command writes a results directory, and can be stopped and resumed.
+struct ResultsOptions : DeckOptions {
+  std::optional<std::string> directory, resume;
+  bool overwrite = false;
+  double max_walltime = 0;  // min
+};
+/// The deck as the command line asks for it, with its results directory.
+deck::Deck read(const ResultsOptions& options);
 
 /// Work of the subcommand that was chosen on the command line; its result is the exit code.
 using Chosen = std::function<int(const CommonOptions&)>;

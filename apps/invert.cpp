@@ -1,7 +1,6 @@
 // jaxmpm invert: finds the unknowns of a deck from its observations.
 #include <chrono>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "commands.hpp"
 #include "core/error.hpp"
@@ -13,18 +12,6 @@
 namespace jaxmpm {
 namespace {
 
-struct InvertOptions : DeckOptions {
-  std::optional<std::string> directory, resume;
-  bool overwrite = false;
-  double max_walltime = 0;  // min
-};
-
-deck::Deck read(const InvertOptions& options) {
-  std::vector<std::string> assignments = options.assignments;
-  if (options.directory) assignments.push_back("/output/directory=" + nlohmann::json(*options.directory).dump());
-  return deck::read_deck(options.deck, assignments);
-}
-
 /// A signal, or the end of the wall time.
 std::function<bool()> stop_request(double minutes) {
   const auto start = std::chrono::steady_clock::now();
@@ -34,13 +21,13 @@ std::function<bool()> stop_request(double minutes) {
   };
 }
 
-void refuse_to_overwrite(const InvertOptions& options, const InversionDirectory& directory) {
+void refuse_to_overwrite(const ResultsOptions& options, const InversionDirectory& directory) {
   if (options.resume || options.overwrite || !directory.holds_inversion()) return;
   throw IoError("'" + directory.path() +
                 "' holds an inversion. Continue it with --resume auto, replace it with --overwrite, or choose another directory with -o.");
 }
 
-int invert(const InvertOptions& options) {
+int invert(const ResultsOptions& options) {
   const deck::Deck deck = read(options);
   const InversionDirectory directory(deck.output.directory);
   refuse_to_overwrite(options, directory);
@@ -63,7 +50,7 @@ int invert(const InvertOptions& options) {
 
 void add_invert(CLI::App& app, Chosen& chosen) {
   CLI::App* command = app.add_subcommand("invert", "Find the unknowns of a deck from its observations");
-  auto options = std::make_shared<InvertOptions>();
+  auto options = std::make_shared<ResultsOptions>();
   add_deck_options(*command, *options);
   command->add_option("-o,--output", options->directory, "Results directory, instead of the deck's")->type_name("DIR");
   CLI::Option* overwrite = command->add_flag("--overwrite", options->overwrite, "Replace an inversion that is there");

@@ -1,4 +1,6 @@
 // Options that subcommands share.
+#include <nlohmann/json.hpp>
+
 #include "commands.hpp"
 
 namespace jaxmpm {
@@ -26,6 +28,12 @@ void add_backend_option(CLI::App& app, DeckOptions& options) {
 Backend chosen_backend(const DeckOptions& options) {
   if (options.backend) return *options.backend == "cuda" ? Backend::cuda : Backend::cpu;
   return has_backend(Backend::cuda) ? Backend::cuda : Backend::cpu;
+}
+
+deck::Deck read(const ResultsOptions& options) {
+  std::vector<std::string> assignments = options.assignments;
+  if (options.directory) assignments.push_back("/output/directory=" + nlohmann::json(*options.directory).dump());
+  return deck::read_deck(options.deck, assignments);
 }
 
 }  // namespace jaxmpm

@@ -16,21 +16,8 @@
 namespace jaxmpm {
 namespace {
 
-struct RunOptions : DeckOptions {
-  std::optional<std::string> directory, resume;
-  bool overwrite = false;
-  double max_walltime = 0;  // min
-};
-
-/// The deck as the command line asks for it.
-deck::Deck read(const RunOptions& options) {
-  std::vector<std::string> assignments = options.assignments;
-  if (options.directory) assignments.push_back("/output/directory=" + nlohmann::json(*options.directory).dump());
-  return deck::read_deck(options.deck, assignments);
-}
-
 /// Finds the checkpoint to resume from, if one is asked for and there is one, and refuses what must not be overwritten or continued.
-std::optional<Checkpoint> find_start(const RunOptions& options, const deck::Deck& deck, const ResultsDirectory& directory,
+std::optional<Checkpoint> find_start(const ResultsOptions& options, const deck::Deck& deck, const ResultsDirectory& directory,
                                      const std::string& backend) {
   if (!options.resume) {
     if (!options.overwrite && directory.holds_results())
@@ -61,7 +48,7 @@ std::optional<Checkpoint> find_start(const RunOptions& options, const deck::Deck
 }
 
 /// A checkpoint of another directory brings its frames along.
-void adopt_frames(const RunOptions& options, const ResultsDirectory& directory, const Checkpoint& from) {
+void adopt_frames(const ResultsOptions& options, const ResultsDirectory& directory, const Checkpoint& from) {
   if (*options.resume == "auto") return;
   const std::filesystem::path home = std::filesystem::absolute(*options.resume).parent_path();
   if (std::filesystem::equivalent(home, directory.path())) return;
@@ -71,7 +58,7 @@ void adopt_frames(const RunOptions& options, const ResultsDirectory& directory, 
   directory.adopt_frames(ResultsDirectory(home.string()), from.frames.size());
 }
 
-RunSettings settings(const deck::Deck& deck, const RunOptions& options) {
+RunSettings settings(const deck::Deck& deck, const ResultsOptions& options) {
   RunSettings settings;
   settings.frame_interval = deck.output.interval;
   settings.gauge_interval = deck.output.gauge_interval.value_or(deck.output.interval);
@@ -90,7 +77,7 @@ void warn_of_large_step(const Model& model, const Solver& solver) {
 
 class Run {
  public:
-  explicit Run(const RunOptions& options, bool quiet)
+  explicit Run(const ResultsOptions& options, bool quiet)
       : options_(options),
         deck_(read(options)),
         directory_(deck_.output.directory),
@@ -158,7 +145,7 @@ class Run {
     return static_cast<int>(ExitCode::stopped);
   }
 
-  const RunOptions& options_;
+  const ResultsOptions& options_;
   deck::Deck deck_;
   ResultsDirectory directory_;
   Backend backend_;
@@ -173,7 +160,7 @@ class Run {
 
 void add_run(CLI::App& app, Chosen& chosen) {
   CLI::App* command = app.add_subcommand("run", "Run a deck and write its results");
-  auto options = std::make_shared<RunOptions>();
+  auto options = std::make_shared<ResultsOptions>();
   add_deck_options(*command, *options);
   add_backend_option(*command, *options);
   command->add_option("-o,--output", options->directory, "Results directory, instead of the deck's")->type_name("DIR");

@@ -38,4 +38,11 @@ JAXMPM_INLINE double log1p(double x) { return std::log1p(x); }
 JAXMPM_INLINE float value_of(float x) { return x; }
 JAXMPM_INLINE double value_of(double x) { return x; }
 
+/// Whether a branch that compares two numbers hangs on round-off; infinite ones never do.
+template <class Real>
+JAXMPM_INLINE auto at_kink(const Real& a, const Real& b) {
+  const Real distance = abs(a - b);
+  return (distance <= Real(1e-12) * max(abs(a), abs(b))) & (distance < Real(1e30));
+}
+
 }  // namespace jaxmpm

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/pack.hpp"
+#include "core/scalar.hpp"
 
 namespace jaxmpm {
 
@@ -39,11 +40,8 @@ class Tape {
       if (n.b >= 0) nodes_[std::size_t(n.b)].bar += select(reached, n.by_b * n.bar, P(0));
     }
   }
-  /// Marks lanes whose branch hangs on round-off: |a − b| ≤ 1e-12 max(|a|, |b|).
-  void watch(P a, P b) {
-    const P distance = abs(a - b);
-    tie_ = tie_ | ((distance <= P(1e-12) * max(abs(a), abs(b))) & (distance < P(1e300)));
-  }
+  /// Marks lanes whose branch hangs on round-off.
+  void watch(P a, P b) { tie_ = tie_ | at_kink(a, b); }
   Condition ties() const { return tie_; }
 
  private:

@@ -32,7 +32,6 @@ std::size_t steps_to_next_snapshot(std::size_t steps, std::size_t free) {
 double recomputed_steps(std::size_t steps, std::size_t snapshots) {
   double forward = 0;
   std::vector<std::size_t> kept{0};
-  std::size_t present = 0;
   for (std::size_t end = steps; end > 0;) {
     const std::size_t begin = kept.back();
     if (end - begin == 1) {
@@ -43,8 +42,7 @@ double recomputed_steps(std::size_t steps, std::size_t snapshots) {
     }
     const std::size_t go = steps_to_next_snapshot(end - begin, snapshots - kept.size());
     forward += double(go);
-    present = begin + go;
-    kept.push_back(present);
+    kept.push_back(begin + go);
   }
   return forward - double(steps);
 }

@@ -37,7 +37,6 @@ class Walk {
       look(k + 1);
     }
   }
-  bool seen_all() const { return next_look_ == steps_.looks.size(); }
 
  private:
   void look(std::size_t state) {

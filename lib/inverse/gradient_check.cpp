@@ -7,6 +7,7 @@
 
 #include "fields/random.hpp"
 #include "inverse/differences.hpp"
+#include "inverse/linear_algebra.hpp"
 #include "inverse/recorded_loss.hpp"
 
 namespace jaxmpm {
@@ -19,12 +20,6 @@ constexpr double rounding = 1e-13;           // of the loss and of its change, i
 constexpr double smooth_agreement = 1e-5;    // of differences with the adjoint, relative
 constexpr double branched_agreement = 1e-3;  // the same where the runs to either side cross branches
 constexpr std::size_t most_variables = 20;
-
-double dot(const std::vector<double>& a, const std::vector<double>& b) {
-  double sum = 0;
-  for (std::size_t k = 0; k < a.size(); ++k) sum += a[k] * b[k];
-  return sum;
-}
 
 double nearer(double a, double b, double target) { return std::abs(a - target) <= std::abs(b - target) ? a : b; }
 

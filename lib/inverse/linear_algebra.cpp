@@ -46,6 +46,12 @@ std::vector<double> solve(const Factor& f, std::vector<double> x) {
 
 }  // namespace
 
+double dot(const std::vector<double>& a, const std::vector<double>& b) {
+  double sum = 0;
+  for (std::size_t k = 0; k < a.size(); ++k) sum += a[k] * b[k];
+  return sum;
+}
+
 std::optional<std::vector<double>> solve(const SquareMatrix& matrix, const std::vector<double>& right) {
   const std::optional<Factor> factor = factorise(matrix);
   if (!factor) return std::nullopt;

@@ -6,6 +6,8 @@
 
 namespace jaxmpm {
 
+double dot(const std::vector<double>& a, const std::vector<double>& b);
+
 /// A square matrix, row by row.
 struct SquareMatrix {
   explicit SquareMatrix(std::size_t size = 0) : size(size), entries(size * size, 0.0) {}

@@ -4,6 +4,7 @@
 
 #include "core/error.hpp"
 #include "inverse/differences.hpp"
+#include "inverse/linear_algebra.hpp"
 
 namespace jaxmpm {
 namespace {
@@ -12,17 +13,7 @@ namespace {
 /// that of rounding in a run, some 1e-12 over it, are both far below what a standard error or a Gauss–Newton step needs.
 constexpr double jacobian_spacing = 1e-4;
 
-double half_square(const std::vector<double>& residuals) {
-  double sum = 0;
-  for (const double r : residuals) sum += r * r;
-  return sum / 2;
-}
-
-double dot(const std::vector<double>& a, const std::vector<double>& b) {
-  double sum = 0;
-  for (std::size_t k = 0; k < a.size(); ++k) sum += a[k] * b[k];
-  return sum;
-}
+double half_square(const std::vector<double>& residuals) { return dot(residuals, residuals) / 2; }
 
 Linearisation linearisation_of(const RecordedEvaluation& found) {
   const std::size_t n = found.u.size();

@@ -85,6 +85,28 @@ JAXMPM_INLINE void gather(const StencilRows<Sch>& rows, const Stencil& t, int l,
   });
 }
 
+/// Gathers for `count` particles (those of the stencils t) what their quads need, in the order of GatheredQuads; lanes behind them repeat
+/// the last. `rows` holds the stencil of base node `loaded` from particle to particle, and from batch to batch.
+template <class Sch, class Stencil>
+JAXMPM_INLINE void gather_batch(const Stencil& t, int count, const typename Sch::T* arena, StencilRows<Sch>* rows, int& loaded,
+                                ParticleRows<typename Sch::T, 4 * GatheredQuads<Sch>::padded>& gathered) {
+  using T = typename Sch::T;
+  using G = GatheredQuads<Sch>;
+  using R = typename StencilRows<Sch>::R;
+  for (int l = 0; l < count; ++l) {
+    if (t.base[l] != loaded) {
+      loaded = t.base[l];
+      for (int plane = 0; plane < Sch::planes; ++plane) rows[plane].load(arena + plane * Sch::arena_plane + loaded * 4);
+    }
+    R sums[G::padded];
+    for (int i = G::count; i < G::padded; ++i) sums[i] = R(T(0));
+    gather<Sch, Sch::g2p_moments, Sch::g2p_slopes>(rows[0], t, l, sums);
+    if constexpr (Sch::flip) gather<Sch, false, false>(rows[Sch::planes - 1], t, l, sums + G::change);
+    for (int i = 0; i < G::padded; i += G::per_store) sum_quads<T, R::lanes>(sums + i).store(gathered.row(l) + 4 * i);
+  }
+  for (int l = count; l < batch<T>; ++l) std::memcpy(gathered.row(l), gathered.row(count - 1), sizeof(T) * std::size_t(4 * G::padded));
+}
+
 /// What the gather knows of the domain: cells along each axis, to catch particles that leave it.
 template <int Dim>
 struct DomainBounds {
@@ -154,7 +176,6 @@ TileReport g2p_tile(Particles<typename Sch::T, Sch::Dim>& p, std::size_t begin, 
                     const Index<Sch::Dim>& origin, const DomainBounds<Sch::Dim>& domain, const typename Sch::T* arena) {
   using T = typename Sch::T;
   using G = GatheredQuads<Sch>;
-  using R = typename StencilRows<Sch>::R;
   constexpr int W = batch<T>;
   StencilRows<Sch> rows[Sch::planes];
   for (auto& r : rows) r.clear();
@@ -164,18 +185,7 @@ TileReport g2p_tile(Particles<typename Sch::T, Sch::Dim>& p, std::size_t begin, 
     const int count = int(end - s < std::size_t(W) ? end - s : std::size_t(W));
     const Stencils<Sch, Sch::g2p_moments, Sch::g2p_slopes> t(p, s, count, origin);
     ParticleRows<T, 4 * G::padded> gathered;
-    for (int l = 0; l < count; ++l) {
-      if (t.base[l] != current) {
-        current = t.base[l];
-        for (int plane = 0; plane < Sch::planes; ++plane) rows[plane].load(arena + plane * Sch::arena_plane + current * 4);
-      }
-      R sums[G::padded];
-      for (int i = G::count; i < G::padded; ++i) sums[i] = R(T(0));
-      gather<Sch, Sch::g2p_moments, Sch::g2p_slopes>(rows[0], t, l, sums);
-      if constexpr (Sch::flip) gather<Sch, false, false>(rows[Sch::planes - 1], t, l, sums + G::change);
-      for (int i = 0; i < G::padded; i += G::per_store) sum_quads<T, R::lanes>(sums + i).store(gathered.row(l) + 4 * i);
-    }
-    for (int l = count; l < W; ++l) std::memcpy(gathered.row(l), gathered.row(count - 1), sizeof(T) * std::size_t(4 * G::padded));
+    gather_batch<Sch>(t, count, arena, rows, current, gathered);
     Pack<T, W> packs[decltype(gathered)::stride];
     gathered.read(packs);
     update_particles<Sch>(p, s, count, packs, material, step, account, domain, report);

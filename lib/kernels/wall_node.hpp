@@ -90,8 +90,6 @@ template <class T, int Dim>
 JAXMPM_FUNCTION void write_wall_node(const T* quad, const Vector<T, Dim>& v, T mass_cut_off, int planes, int own, T* out) {
   constexpr int plane = BlockShape<Dim, 2>::cells * 4;
   const T mass = quad[0];
-  for (int p = 0; p < planes; ++p)
-    for (int c = 0; c < 4; ++c) out[p * plane + 4 * own + c] = T(0);  // unused places too: the adjoint multiplies them by zero
   out[4 * own] = mass;
   for (int c = 0; c < Dim; ++c) {
     out[4 * own + 1 + c] = v[c];

@@ -10,30 +10,45 @@
 
 namespace jaxmpm {
 
+/// R − I = 2 (S + S²)/(1 + a²) of the turn in a step, with S = W/2, W = (H − Hᵀ)/2 and a² = −tr S²/2.
+template <class Real, int Dim>
+struct Turn {
+  Matrix<Real, Dim> S, sum, E;  // S, S + S² and R − I
+  Real scale;                   // 2/(1 + a²)
+
+  JAXMPM_INLINE explicit Turn(const Matrix<Real, Dim>& H) {
+    Real a2 = Real(0);
+    for (int i = 0; i < Dim; ++i)
+      for (int j = 0; j < Dim; ++j) S(i, j) = Real(0.25) * (H(i, j) - H(j, i));
+    for (int i = 0; i < Dim; ++i)
+      for (int j = 0; j < i; ++j) a2 = a2 + S(i, j) * S(i, j);
+    scale = Real(2) / (Real(1) + a2);
+    for (int i = 0; i < Dim; ++i)
+      for (int j = 0; j < Dim; ++j) {
+        sum(i, j) = S(i, j);
+        for (int k = 0; k < Dim; ++k) sum(i, j) = sum(i, j) + S(i, k) * S(k, j);
+        E(i, j) = scale * sum(i, j);
+      }
+  }
+  /// (R − I) σ.
+  JAXMPM_INLINE Matrix<Real, Dim> apply(const Symmetric<Real, Dim>& stress) const {
+    Matrix<Real, Dim> ES;
+    for (int i = 0; i < Dim; ++i)
+      for (int j = 0; j < Dim; ++j) {
+        ES(i, j) = E(i, 0) * stress(0, j);
+        for (int k = 1; k < Dim; ++k) ES(i, j) = ES(i, j) + E(i, k) * stress(k, j);
+      }
+    return ES;
+  }
+};
+
 /// R σ Rᵀ with R = (I − W/2)⁻¹ (I + W/2), W = (H − Hᵀ)/2: the Cayley transform of Hughes & Winget (1980), exactly orthogonal, so that the
 /// invariants of σ survive any number of turns (Du & He 2025, Eq A.2, is its first-order limit and lets J2 grow). With S = W/2 and
 /// a² = −tr S²/2, R − I = 2 (S + S²)/(1 + a²); the difference from I is what is applied, so that single precision keeps small turns.
 template <class Real, int Dim>
 JAXMPM_INLINE Symmetric<Real, Dim> rotate(const Symmetric<Real, Dim>& stress, const Matrix<Real, Dim>& H) {
-  Matrix<Real, Dim> S, E, ES;
-  Real a2 = Real(0);
-  for (int i = 0; i < Dim; ++i)
-    for (int j = 0; j < Dim; ++j) S(i, j) = Real(0.25) * (H(i, j) - H(j, i));
-  for (int i = 0; i < Dim; ++i)
-    for (int j = 0; j < i; ++j) a2 = a2 + S(i, j) * S(i, j);
-  const Real scale = Real(2) / (Real(1) + a2);
-  for (int i = 0; i < Dim; ++i)
-    for (int j = 0; j < Dim; ++j) {
-      Real sum = S(i, j);
-      for (int k = 0; k < Dim; ++k) sum = sum + S(i, k) * S(k, j);
-      E(i, j) = scale * sum;
-    }
-  for (int i = 0; i < Dim; ++i)
-    for (int j = 0; j < Dim; ++j) {
-      Real sum = E(i, 0) * stress(0, j);
-      for (int k = 1; k < Dim; ++k) sum = sum + E(i, k) * stress(k, j);
-      ES(i, j) = sum;
-    }
+  const Turn<Real, Dim> turn(H);
+  const Matrix<Real, Dim>&E = turn.E, ES = turn.apply(stress);
   Symmetric<Real, Dim> rotated = stress;
   for (int i = 0; i < Dim; ++i)
     for (int j = 0; j <= i; ++j) {
@@ -49,25 +64,11 @@ JAXMPM_INLINE Symmetric<Real, Dim> rotate(const Symmetric<Real, Dim>& stress, co
 template <class Real, int Dim>
 JAXMPM_INLINE void rotate_adjoint(const Symmetric<Real, Dim>& stress, const Matrix<Real, Dim>& H, Symmetric<Real, Dim>& by,
                                   Matrix<Real, Dim>& by_H) {
-  Matrix<Real, Dim> S, E, sum, ES, by_E, by_ES, by_S;
-  Real a2 = Real(0);
-  for (int i = 0; i < Dim; ++i)
-    for (int j = 0; j < Dim; ++j) S(i, j) = Real(0.25) * (H(i, j) - H(j, i));
-  for (int i = 0; i < Dim; ++i)
-    for (int j = 0; j < i; ++j) a2 = a2 + S(i, j) * S(i, j);
-  const Real scale = Real(2) / (Real(1) + a2);
-  for (int i = 0; i < Dim; ++i)
-    for (int j = 0; j < Dim; ++j) {
-      sum(i, j) = S(i, j);
-      for (int k = 0; k < Dim; ++k) sum(i, j) = sum(i, j) + S(i, k) * S(k, j);
-      E(i, j) = scale * sum(i, j);
-      by_E(i, j) = by_ES(i, j) = by_S(i, j) = Real(0);
-    }
-  for (int i = 0; i < Dim; ++i)
-    for (int j = 0; j < Dim; ++j) {
-      ES(i, j) = Real(0);
-      for (int k = 0; k < Dim; ++k) ES(i, j) = ES(i, j) + E(i, k) * stress(k, j);
-    }
+  const Turn<Real, Dim> turn(H);
+  const Matrix<Real, Dim>&S = turn.S, &E = turn.E, ES = turn.apply(stress);
+  const Real scale = turn.scale;
+  Matrix<Real, Dim> by_E, by_ES, by_S;
+  for (int k = 0; k < Dim * Dim; ++k) by_E.a[k] = by_ES.a[k] = by_S.a[k] = Real(0);
   for (int i = 0; i < Dim; ++i)  // rotated = σ + ES + (ES)ᵀ + ES Eᵀ
     for (int j = 0; j <= i; ++j) {
       const Real b = by[Symmetric<Real, Dim>::index(i, j)];
@@ -81,7 +82,7 @@ JAXMPM_INLINE void rotate_adjoint(const Symmetric<Real, Dim>& stress, const Matr
         by_E(i, k) = by_E(i, k) + by_ES(i, j) * stress(k, j), by[at] = by[at] + by_ES(i, j) * E(i, k);
       }
   Real by_scale = Real(0);
-  for (int k = 0; k < Dim * Dim; ++k) by_scale = by_scale + by_E.a[k] * sum.a[k];
+  for (int k = 0; k < Dim * Dim; ++k) by_scale = by_scale + by_E.a[k] * turn.sum.a[k];
   const Real by_a2 = Real(-0.5) * by_scale * scale * scale;
   for (int i = 0; i < Dim; ++i)
     for (int j = 0; j < Dim; ++j) {

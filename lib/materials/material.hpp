@@ -99,13 +99,6 @@ JAXMPM_INLINE Real compress(Real e, Real theta) {
   return (e - theta) / (Real(1) + theta);
 }
 
-/// Whether a branch that compares two numbers hangs on round-off; infinite ones never do.
-template <class Real>
-JAXMPM_INLINE auto at_kink(Real a, Real b) {
-  const Real distance = abs(a - b);
-  return (distance <= Real(1e-12) * max(abs(a), abs(b))) & (distance < Real(1e30));
-}
-
 /// Adjoint of compress(): `by` is by its result, then by e; returns the derivative by θ.
 template <class Real>
 JAXMPM_INLINE Real compress_adjoint(Real e, Real theta, Real& by) {

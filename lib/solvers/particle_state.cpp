@@ -88,8 +88,8 @@ BodySnapshot body_snapshot(const Model& model, const Body& body, const MaterialK
   const std::size_t n = p.count(), history = std::size_t(material.history_size());
   std::vector<std::uint32_t> place(n);  // of each storage slot in the snapshot
   std::iota(place.begin(), place.end(), 0u);
-  if (ordered && n > 0) {  // ids of a body are consecutive
-    const std::uint32_t first = *std::min_element(p.id.begin(), p.id.end());
+  if (ordered) {
+    const std::uint32_t first = p.first_id();
     for (std::size_t a = 0; a < n; ++a) place[a] = p.id[a] - first;
   }
   BodySnapshot s;

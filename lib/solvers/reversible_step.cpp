@@ -159,13 +159,11 @@ void ReversibleStep<T, Dim>::add_gradient(const SnapshotGradient& by) {
   }
 }
 
-/// A body's ids are consecutive: a snapshot in order of ids has particle a at id − first.
 template <class T, int Dim>
 void ReversibleStep<T, Dim>::add_body_gradient(std::size_t b, const BodySnapshot& by) {
   const Particles<T, Dim>& p = this->bodies_[b];
   Particles<T, Dim>& bar = bars_[b];
-  if (p.count() == 0) return;
-  const std::uint32_t first = *std::min_element(p.id.begin(), p.id.end());
+  const std::uint32_t first = p.first_id();
   const double rho0 = double(this->materials_[b]->reference_density()), h = this->model_.cell_size;
   const int strain = this->materials_[b]->plastic_strain_index();
   for (std::size_t a = 0; a < p.count(); ++a) {
@@ -186,8 +184,7 @@ template <class T, int Dim>
 void ReversibleStep<T, Dim>::add_stress_gradient(std::size_t b, const BodySnapshot& by) {
   constexpr int W = native_lanes<T>, size = Symmetric<T, Dim>::size;
   const Particles<T, Dim>& p = this->bodies_[b];
-  if (p.count() == 0) return;
-  const std::uint32_t first = *std::min_element(p.id.begin(), p.id.end());
+  const std::uint32_t first = p.first_id();
   for (std::size_t s = 0; s < p.count(); s += W) {
     const int count = int(std::min<std::size_t>(W, p.count() - s));
     alignas(64) T by_sigma[size][W] = {};
@@ -220,8 +217,7 @@ BodyGradient ReversibleStep<T, Dim>::body_gradient(std::size_t b) const {
   material_adjoints_[b]->start(p, bar, by_compression.data(), by_stress.data(), constants);
   by.material = by_material_numbers(this->model_.bodies[b].material, constants.constants.data());
   by.initial.velocity.resize(n), by.initial.mass.resize(n), by.initial.compression.resize(n), by.initial.stress.resize(n);
-  if (n == 0) return by;
-  const std::uint32_t first = *std::min_element(p.id.begin(), p.id.end());
+  const std::uint32_t first = p.first_id();
   for (std::size_t a = 0; a < n; ++a) {
     const std::size_t i = p.id[a] - first;
     for (std::size_t d = 0; d < Dim; ++d) by.initial.velocity[i][d] = double(bar.velocity[d][a]);

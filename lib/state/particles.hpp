@@ -1,5 +1,6 @@
 #pragma once
 // The particles of one body: one array per field component, in storage order (sorted by block, cell and id).
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -42,6 +43,8 @@ struct Particles {
   Array<std::uint32_t> id;
 
   std::size_t count() const { return id.size(); }
+  /// Smallest id, 0 of no particles. A body's ids are consecutive: particle a is number id[a] − first_id() in their order.
+  std::uint32_t first_id() const { return id.empty() ? 0 : *std::min_element(id.begin(), id.end()); }
 
   /// The field table: calls f(name, array) for every array, in a fixed order. Sort, checkpoint and memory estimate all go through it.
   template <class F>

@@ -131,9 +131,7 @@ TEST_CASE("gradients of a run agree with central differences") {
   const int dim = GENERATE(2, 3);
   const auto transfer = GENERATE(deck::Transfer::apic, deck::Transfer::flip);
   const auto kind = GENERATE(deck::ContactKind::friction, deck::ContactKind::no_slip);
-  deck::LinearElastic elastic;
-  elastic.density = 1500, elastic.youngs_modulus = 1e5, elastic.poisson_ratio = 0.3;
-  const Model model = scene(dim, transfer, water(2), elastic, kind);
+  const Model model = scene(dim, transfer, water(2), elastic(), kind);
   Everything observer({0, 4e-4, 1e-3});
   const StepSequence steps = record_run(model, observer, {});
   CHECK(steps.dt.size() == 10);
@@ -151,11 +149,9 @@ TEST_CASE("gradients of a run agree with central differences") {
 }
 
 TEST_CASE("gradients by a granular material's numbers agree with central differences") {
-  deck::NeoHookean rubber;
-  rubber.density = 1100, rubber.youngs_modulus = 1e5, rubber.poisson_ratio = 0.4;
   deck::DruckerPrager loam = sand();
   loam.cohesion = 200;
-  const Model model = scene(2, deck::Transfer::apic, loam, rubber, deck::ContactKind::friction);
+  const Model model = scene(2, deck::Transfer::apic, loam, rubber(), deck::ContactKind::friction);
   Everything observer({1e-3});
   const StepSequence steps = record_run(model, observer, {});
   const ModelGradient g = gradient_of(model, steps, observer, 3);
@@ -170,9 +166,7 @@ TEST_CASE("gradients by a granular material's numbers agree with central differe
 }
 
 TEST_CASE("gradients of a run that sorts its particles on the way agree with central differences") {
-  deck::LinearElastic soft;
-  soft.density = 1500, soft.youngs_modulus = 1e5, soft.poisson_ratio = 0.3;
-  Model model = scene(2, deck::Transfer::tpic, soft, soft, deck::ContactKind::slip);
+  Model model = scene(2, deck::Transfer::tpic, elastic(), elastic(), deck::ContactKind::slip);
   model.obstacles.resize(0);
   model.time.step = 2e-4;
   Everything observer({6e-3, 1.4e-2});  // 70 steps; particles cross more than half a cell

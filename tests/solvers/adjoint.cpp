@@ -78,17 +78,6 @@ double mismatch(const Model& model, double dt) {
 
 double mismatch(const Model& model, double dt) { return model.dim == 2 ? mismatch<2>(model, dt) : mismatch<3>(model, dt); }
 
-deck::LinearElastic elastic() {
-  deck::LinearElastic m;
-  m.density = 1500, m.youngs_modulus = 1e5, m.poisson_ratio = 0.3;
-  return m;
-}
-deck::NeoHookean rubber() {
-  deck::NeoHookean m;
-  m.density = 1100, m.youngs_modulus = 1e5, m.poisson_ratio = 0.4;
-  return m;
-}
-
 constexpr double tolerance = 1e-14, dt = 2e-4;
 
 }  // namespace

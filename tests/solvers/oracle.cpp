@@ -105,17 +105,6 @@ void check_step(const Model& model, double dt) {
   }
 }
 
-deck::LinearElastic elastic() {
-  deck::LinearElastic m;
-  m.density = 1500, m.youngs_modulus = 1e5, m.poisson_ratio = 0.3;
-  return m;
-}
-deck::NeoHookean rubber() {
-  deck::NeoHookean m;
-  m.density = 1100, m.youngs_modulus = 1e5, m.poisson_ratio = 0.4;
-  return m;
-}
-
 }  // namespace
 
 TEST_CASE("the fast step matches the reference step for every scheme") {

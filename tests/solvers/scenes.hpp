@@ -18,6 +18,17 @@ inline deck::DruckerPrager sand() {
   return m;
 }
 
+inline deck::LinearElastic elastic() {
+  deck::LinearElastic m;
+  m.density = 1500, m.youngs_modulus = 1e5, m.poisson_ratio = 0.3;
+  return m;
+}
+inline deck::NeoHookean rubber() {
+  deck::NeoHookean m;
+  m.density = 1100, m.youngs_modulus = 1e5, m.poisson_ratio = 0.4;
+  return m;
+}
+
 /// A body of jittered particles, 2 per cell and axis, in the box of cells [lower, upper), with smooth random velocity, compression and (for
 /// solids) stress.
 inline Body jittered_body(const std::string& name, const deck::Material& material, int dim, const Point& lower, const Point& upper,

@@ -89,18 +89,7 @@ void g2p_adjoint_tile(const Particles<typename Sch::T, Sch::Dim>& p, std::size_t
     const int count = int(end - s < std::size_t(W) ? end - s : std::size_t(W));
     const Stencils<Sch, Sch::g2p_moments, Sch::g2p_slopes, true> t(p, s, count, origin);
     ParticleRows<T, 4 * G::padded> gathered;
-    for (int l = 0; l < count; ++l) {
-      if (t.base[l] != loaded) {
-        loaded = t.base[l];
-        for (int plane = 0; plane < Sch::planes; ++plane) rows[plane].load(velocities + plane * Sch::arena_plane + loaded * 4);
-      }
-      R sums[G::padded];
-      for (int i = G::count; i < G::padded; ++i) sums[i] = R(T(0));
-      gather<Sch, Sch::g2p_moments, Sch::g2p_slopes>(rows[0], t, l, sums);
-      if constexpr (Sch::flip) gather<Sch, false, false>(rows[Sch::planes - 1], t, l, sums + G::change);
-      for (int i = 0; i < G::padded; i += G::per_store) sum_quads<T, R::lanes>(sums + i).store(gathered.row(l) + 4 * i);
-    }
-    for (int l = count; l < W; ++l) std::memcpy(gathered.row(l), gathered.row(count - 1), sizeof(T) * std::size_t(4 * G::padded));
+    gather_batch<Sch>(t, count, velocities, rows, loaded, gathered);
     Pack<T, W> packs[decltype(gathered)::stride], quads[decltype(gathered)::stride];
     gathered.read(packs);
     for (auto& q : quads) q = Pack<T, W>(T(0));
