@@ -20,6 +20,13 @@ function(jaxmpm_cuda_sources variable pattern)
   set(${variable} ${sources} PARENT_SCOPE)
 endfunction()
 
+# In CUDA builds the host compiler takes the sources of a target that never includes Kokkos: it is quicker than nvcc and warns of what is there.
+function(jaxmpm_host_only target)
+  if(JAXMPM_CUDA)
+    target_compile_options(${target} PRIVATE --host-only)
+  endif()
+endfunction()
+
 # What CI compiles: the stepper, and quadratic splines with apic and flip, in both precisions and dimensions.
 function(jaxmpm_cuda_subset)
   if(JAXMPM_CUDA)

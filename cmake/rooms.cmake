@@ -1,5 +1,5 @@
 # jaxmpm_room(NAME [USES room…] [LINK target…] [NO_KOKKOS]): the library of lib/NAME, from all its .cpp files; header-only rooms become interface
-# libraries. NO_KOKKOS: none of them includes Kokkos, so that in CUDA builds the host compiler takes them, which is quicker than nvcc.
+# libraries. NO_KOKKOS: none of them includes Kokkos.
 function(jaxmpm_room name)
   cmake_parse_arguments(ROOM "NO_KOKKOS" "" "USES;LINK" ${ARGN})
   set(target jaxmpm_${name})
@@ -11,8 +11,8 @@ function(jaxmpm_room name)
     add_library(${target} STATIC ${sources})
     target_include_directories(${target} PUBLIC ${PROJECT_SOURCE_DIR}/lib)
     target_link_libraries(${target} PUBLIC ${ROOM_USES} ${ROOM_LINK} PRIVATE jaxmpm_warnings)
-    if(ROOM_NO_KOKKOS AND JAXMPM_CUDA)
-      target_compile_options(${target} PRIVATE --host-only)
+    if(ROOM_NO_KOKKOS)
+      jaxmpm_host_only(${target})
     endif()
     if(NOT JAXMPM_SANITIZE AND name STREQUAL "deck")  # computes nothing: its templates compile in half the time
       target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
