@@ -2,10 +2,16 @@
 // Function marks: the same source compiles for the host and, in the .cu files of a CUDA build (JAXMPM_DEVICE_CODE), for the device. The
 // other files stay host code, as packs of lanes cannot be on the device. JAXMPM_INLINE insists on inlining, JAXMPM_FUNCTION leaves it to
 // the compiler.
+// JAXMPM_UNROLL unrolls the loop that follows on the device, where an array whose indices are not known at compile time leaves the registers.
 #if defined(JAXMPM_DEVICE_CODE)
 #define JAXMPM_INLINE __host__ __device__ __forceinline__
 #define JAXMPM_FUNCTION __host__ __device__ inline
 #else
 #define JAXMPM_INLINE inline __attribute__((always_inline))
 #define JAXMPM_FUNCTION inline
+#endif
+#if defined(__CUDA_ARCH__)
+#define JAXMPM_UNROLL _Pragma("unroll")
+#else
+#define JAXMPM_UNROLL
 #endif

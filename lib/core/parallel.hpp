@@ -37,6 +37,15 @@ void parallel_for_host_static(const std::string& label, std::size_t n, const F& 
 template <class Space>
 inline constexpr bool on_host = std::is_same_v<typename Space::memory_space, Kokkos::HostSpace>;
 
+/// Memory of the host that an execution space reaches.
+#if defined(KOKKOS_ENABLE_CUDA)
+template <class Space>
+using PinnedSpace = std::conditional_t<on_host<Space>, Kokkos::HostSpace, Kokkos::CudaHostPinnedSpace>;
+#else
+template <class Space>
+using PinnedSpace = Kokkos::HostSpace;
+#endif
+
 /// Runs f(i) for i = 0 … n−1 on any execution space, in its queue.
 template <class Space, class F>
 void parallel_for_on(const std::string& label, const Space& space, std::size_t n, const F& f) {
@@ -55,11 +64,13 @@ typename F::value_type parallel_scan_on(const std::string& label, const Space& s
 template <class Space>
 using Team = typename Kokkos::TeamPolicy<Space>::member_type;
 
-/// Runs f(team) for teams of `threads` threads (of one on the host) that share `scratch` bytes; teams are numbered by league_rank().
-template <class Space, class F>
-void parallel_for_teams(const std::string& label, const Space& space, std::size_t teams, int threads, std::size_t scratch, const F& f) {
+/// Runs f(team) for teams of `threads` threads (of one on the host) that share `scratch` bytes; teams are numbered by league_rank(). A
+/// processor of the device shall have room for `resident` teams: the compiler keeps to so many registers (0: as it likes).
+template <int threads, int resident, class Space, class F>
+void parallel_for_teams(const std::string& label, const Space& space, std::size_t teams, std::size_t scratch, const F& f) {
   if (teams == 0) return;
-  Kokkos::TeamPolicy<Space> policy(space, int(teams), on_host<Space> ? 1 : threads);
+  Kokkos::TeamPolicy<Space, Kokkos::LaunchBounds<unsigned(threads), unsigned(resident)>> policy(space, int(teams),
+                                                                                                on_host<Space> ? 1 : threads);
   Kokkos::parallel_for(label, policy.set_scratch_size(0, Kokkos::PerTeam(int(scratch))), f);
 }
 
@@ -69,25 +80,37 @@ JAXMPM_INLINE void team_for(const Team& team, int n, const F& f) {
   for (int i = team.team_rank(); i < n; i += team.team_size()) f(i);
 }
 
-/// The team's shared memory, which parallel_for_teams() was asked for.
+/// Part of the team's shared memory, which parallel_for_teams() was asked for; begins at a multiple of 16 bytes (ask for 16 more each
+/// time).
 template <class T, class Team>
 JAXMPM_INLINE T* team_memory(const Team& team, int values) {
-  return static_cast<T*>(team.team_scratch(0).get_shmem(values * int(sizeof(T))));
+  return static_cast<T*>(team.team_scratch(0).get_shmem_aligned(values * int(sizeof(T)), 16));
 }
 
-/// Largest of the values of a team's threads, and their sum; all threads have to call. The barrier keeps a reduction from overtaking the
-/// one before it, as they use the same shared memory (Kokkos 3.4).
-template <class Team>
-JAXMPM_INLINE double team_max(const Team& team, double value) {
-  team.team_barrier();
-  team.team_reduce(Kokkos::Max<double>(value));
-  return value;
-}
+/// Sum of the values of a team's threads; all of them have to call. The barrier keeps a reduction from overtaking the one before it, as
+/// they use the same shared memory (Kokkos 3.4).
 template <class Team>
 JAXMPM_INLINE double team_sum(const Team& team, double value) {
   team.team_barrier();
   team.team_reduce(Kokkos::Sum<double>(value));
   return value;
+}
+
+/// Largest of the values of the threads that run in step, a warp of a device or one thread of the host; all of them have to call.
+template <class T>
+JAXMPM_INLINE T warp_max(T value) {
+#if defined(__CUDA_ARCH__)
+  for (int apart = 16; apart > 0; apart /= 2) {
+    const T other = __shfl_xor_sync(0xffffffffu, value, apart);
+    value = other > value ? other : value;
+  }
+#endif
+  return value;
+}
+/// Whether a thread is the first of its warp.
+template <class Team>
+JAXMPM_INLINE bool leads_warp(const Team& team) {
+  return team.team_rank() % 32 == 0;
 }
 
 }  // namespace jaxmpm

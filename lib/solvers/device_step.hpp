@@ -24,28 +24,31 @@ class DeviceGrid {
   T* arenas() const { return arenas_.data(); }
   const Tile* tiles() const { return tiles_.data(); }
 
-  void record_contact(bool on) { recording_ = on; }
-  /// Totals of the last update on the host: impulse of each face and obstacle, three values each, then friction; N s and J.
+  void record_forces(bool on) { forces_ = on; }
+  /// Impulse of each face and obstacle in the last update, three values each, N s.
   std::vector<double> contact(const Space& space) const;
+  /// Work of friction since the last sort, J; zero unless the model accounts for energy.
+  double friction(const Space& space) const;
 
  private:
   void mirror_obstacles(std::size_t blocks);
+  void mirror_arenas(const Blocks<Dim>& blocks);
+  std::vector<double> sum(const Space& space, const DeviceArray<double, Space>& table, std::size_t columns) const;
 
   const Model& model_;
   DeviceScheme<T, Dim, Space> scheme_;
   ContactBlocks<T, Dim> contact_blocks_;
   T mass_cut_off_;
   GridTables<T, Dim> tables_{};
-  bool recording_ = false;
+  bool forces_ = false;
 
   DeviceArray<Tile, Space> tiles_;
   DeviceArray<Index<Dim>, Space> index_;
   DeviceArray<int, Space> neighbour_, wall_slot_;
-  DeviceArray<std::uint32_t, Space> first_contribution_, wall_block_, first_obstacle_node_;
-  DeviceArray<Contribution, Space> contributions_;
+  DeviceArray<std::uint32_t, Space> first_arena_, arena_tile_, wall_block_, first_obstacle_node_;
   DeviceArray<ObstacleNode<T, Dim>, Space> obstacle_nodes_;
   DeviceArray<ObstacleLaw<T>, Space> obstacle_laws_;
-  DeviceArray<double, Space> wall_ends_, contact_, contact_total_;
+  DeviceArray<double, Space> wall_ends_, contact_, friction_, contact_total_;
   DeviceArray<T, Space> wall_coefficients_, arenas_, raw_, grid_;
 };
 
@@ -79,7 +82,7 @@ class DeviceStep final : public Solver {
   std::vector<BodySnapshot> snapshot(const FieldSelection& fields, bool ordered) const override;
   void record_forces(bool on) override;
   ContactForces forces() const override;
-  Dissipation dissipation() const override { return numbers_.dissipation; }
+  Dissipation dissipation() const override { return numbers().dissipation; }
   std::vector<RawArray> save() const override;
   void restore(const std::vector<RawArray>& arrays) override;
   double bytes_per_particle() const override;
@@ -99,7 +102,10 @@ class DeviceStep final : public Solver {
 
   void sort_if_due();
   void sort();
+  bool sort_on_device(std::vector<Tile>& tiles, std::vector<std::int64_t>& tile_key);
+  void sort_on_host(std::vector<Tile>& tiles, std::vector<std::int64_t>& tile_key);
   void rebuild();
+  StepNumbers numbers() const;
   void p2g();
   void g2p();
   void collect(double dt);
@@ -119,7 +125,8 @@ class DeviceStep final : public Solver {
   DeviceSort<T, Dim, Space> sort_;
   DeviceGrid<T, Dim, Space> grid_;
   StepConstants<T> constants_;
-  DeviceArray<double, Space> report_;  // StepReport
+  DeviceArray<double, Space> report_;     // StepReport of the step under way
+  PinnedArray<double, Space> published_;  // and of the last one, where the host sees it
 
   StepNumbers numbers_;
   bool record_forces_ = false, contact_known_ = false;  // contact_known_: that of the last step is in grid_

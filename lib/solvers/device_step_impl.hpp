@@ -24,15 +24,17 @@ DeviceStep<T, Dim, Space>::DeviceStep(const Model& model, const DeviceScheme<T, 
     : model_(model), scheme_(scheme), extent_(scheme.block_extent(model.cells)), grid_(model_, scheme) {
   for (int d = 0; d < Dim; ++d) cells_[std::size_t(d)] = model.cells[std::size_t(d)];
   constants_ = {T(0), T(model.cell_size), T(model.method.flip_fraction)};
-  report_ = device_array<double, Space>("jaxmpm::report", StepReport::size);
-  grid_.record_contact(model.account_energy);
+  report_ = DeviceArray<double, Space>("jaxmpm::report", StepReport::size);
+  published_ = PinnedArray<double, Space>("jaxmpm::report", StepReport::size);
+  SortScratch<T> scratch;
   for (Body& body : model_.bodies) {
     materials_.push_back(make_material_kernel<T, Dim>(body.material));
-    bodies_.push_back({DeviceParticles<T, Dim, Space>(first_particles<T, Dim>(model_, body, *materials_.back(), numbers_.fastest)),
-                       scheme_.body(body.material)});
+    Particles<T, Dim> particles = first_particles<T, Dim>(model_, body, *materials_.back(), numbers_.fastest);
+    scheme_.sort(particles, std::uint32_t(bodies_.size()), extent_, scratch, blocks_.tiles, tile_key_);
+    bodies_.push_back({DeviceParticles<T, Dim, Space>(particles), scheme_.body(body.material)});
     body.initial = {};  // now in the particles
   }
-  sort();
+  rebuild();
 }
 
 template <class T, int Dim, class Space>
@@ -45,11 +47,39 @@ void DeviceStep<T, Dim, Space>::sort_if_due() {
 
 template <class T, int Dim, class Space>
 void DeviceStep<T, Dim, Space>::sort() {
-  blocks_.tiles.clear(), tile_key_.clear();
-  for (std::size_t b = 0; b < bodies_.size(); ++b)
-    sort_.sort(space_, bodies_[b].particles, std::uint32_t(b), extent_, scheme_.base_shift, blocks_.tiles, tile_key_);
+  std::vector<Tile> tiles;
+  std::vector<std::int64_t> tile_key;
+  numbers_ = numbers();  // the grid forgets the friction of its blocks
+  if (!sort_on_device(tiles, tile_key)) sort_on_host(tiles, tile_key);
+  blocks_.tiles = std::move(tiles), tile_key_ = std::move(tile_key);
   rebuild();
   numbers_.drift = 0;
+}
+
+/// False where a particle has moved further than a block since the last sort.
+template <class T, int Dim, class Space>
+bool DeviceStep<T, Dim, Space>::sort_on_device(std::vector<Tile>& tiles, std::vector<std::int64_t>& tile_key) {
+  std::vector<std::uint32_t> tile_block;
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    const DeviceBody& body = bodies_[b];
+    const typename DeviceSort<T, Dim, Space>::Known known{grid_.tiles() + body.first_tile, grid_.tables().index, grid_.tables().neighbour};
+    if (!sort_.sort(space_, bodies_[b].particles, std::uint32_t(b), blocks_, body.first_tile, body.tiles, known, scheme_.base_shift, tiles,
+                    tile_block))
+      return false;
+  }
+  for (const std::uint32_t block : tile_block) tile_key.push_back(block_key<Dim>(blocks_.index[block], extent_));
+  return true;
+}
+
+template <class T, int Dim, class Space>
+void DeviceStep<T, Dim, Space>::sort_on_host(std::vector<Tile>& tiles, std::vector<std::int64_t>& tile_key) {
+  SortScratch<T> scratch;
+  tiles.clear(), tile_key.clear();
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    Particles<T, Dim> particles = bodies_[b].particles.on_host();
+    scheme_.sort(particles, std::uint32_t(b), extent_, scratch, tiles, tile_key);
+    bodies_[b].particles.load(particles);
+  }
 }
 
 template <class T, int Dim, class Space>
@@ -76,7 +106,6 @@ void DeviceStep<T, Dim, Space>::p2g() {
 
 template <class T, int Dim, class Space>
 void DeviceStep<T, Dim, Space>::g2p() {
-  Kokkos::deep_copy(space_, report_, 0.0);
   const GatherTables<T, Dim> from{grid_.tables().neighbour, grid_.tables().grid, cells_, model_.account_energy, report_.data()};
   for (const DeviceBody& body : bodies_) body.kernels->g2p(space_, body.tiles, body.particles.fields(), tile_table(body), constants_, from);
   if (timer_.sampling()) space_.fence(), timer_.end_phase(&PhaseSeconds::g2p);
@@ -85,17 +114,23 @@ void DeviceStep<T, Dim, Space>::g2p() {
 /// Waits for the step and takes its report.
 template <class T, int Dim, class Space>
 void DeviceStep<T, Dim, Space>::collect(double dt) {
-  std::array<double, StepReport::size> report;
-  const device_detail::HostArray<double> target(report.data(), report.size());
-  Kokkos::deep_copy(space_, target, report_);
+  parallel_for_on("jaxmpm::report", space_, 1, PublishReport{report_.data(), published_.data()});
   space_.fence();
   timer_.end_step();
+  const double* report = published_.data();
   if (report[StepReport::unsound] != 0) report_failure();
   numbers_.fastest = report[StepReport::fastest], numbers_.last_dt = dt;
   numbers_.drift += report[StepReport::displacement];
   numbers_.dissipation.plastic += report[StepReport::plastic], numbers_.dissipation.viscous += report[StepReport::viscous];
   contact_known_ = record_forces_;
-  if (model_.account_energy) numbers_.dissipation.friction += grid_.contact(space_).back();
+}
+
+/// With the friction of the steps since the last sort, which the grid has.
+template <class T, int Dim, class Space>
+StepNumbers DeviceStep<T, Dim, Space>::numbers() const {
+  StepNumbers all = numbers_;
+  all.dissipation.friction += grid_.friction(space_);
+  return all;
 }
 
 template <class T, int Dim, class Space>
@@ -127,7 +162,7 @@ double DeviceStep<T, Dim, Space>::bytes_per_particle() const {
 template <class T, int Dim, class Space>
 void DeviceStep<T, Dim, Space>::record_forces(bool on) {
   record_forces_ = on, contact_known_ = contact_known_ && on;
-  grid_.record_contact(on || model_.account_energy);
+  grid_.record_forces(on);
 }
 
 template <class T, int Dim, class Space>
@@ -160,7 +195,7 @@ std::vector<BodySnapshot> DeviceStep<T, Dim, Space>::snapshot(const FieldSelecti
 
 template <class T, int Dim, class Space>
 std::vector<RawArray> DeviceStep<T, Dim, Space>::save() const {
-  return save_state<T, Dim>(bodies_on_host(), blocks_.tiles, tile_key_, numbers_);
+  return save_state<T, Dim>(bodies_on_host(), blocks_.tiles, tile_key_, numbers());
 }
 
 template <class T, int Dim, class Space>

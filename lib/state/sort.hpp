@@ -2,6 +2,7 @@
 // Sorting: particles by block, cell and id (a total order, so that the bits do not depend on history), and the blocks that follow from it.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "basis/bspline.hpp"
@@ -99,44 +100,79 @@ void sort_particles(Particles<T, Dim>& particles, std::uint32_t body, const Inde
   });
 }
 
-/// Active blocks, neighbours and contributions of the tiles that sort_particles made.
-template <int S, int Dim>
-void build_blocks(Blocks<Dim>& blocks, const std::vector<std::int64_t>& tile_key, const Index<Dim>& extent) {
-  constexpr int around = BlockShape<Dim, S>::neighbours;
+namespace sort_detail {
+
+/// Distance of the keys of neighbouring blocks along each axis.
+template <int Dim>
+std::array<std::int64_t, Dim> key_strides(const Index<Dim>& extent) {
   std::array<std::int64_t, Dim> stride{};
   stride[Dim - 1] = 1;
   for (int d = Dim - 2; d >= 0; --d) stride[std::size_t(d)] = stride[std::size_t(d) + 1] * extent[std::size_t(d) + 1];
-  std::array<std::int64_t, around> offset{};  // of neighbour m = (a·3 + b)·3 + c
-  for (int m = 0; m < around; ++m)
-    for (int d = Dim - 1, rest = m; d >= 0; --d, rest /= 3) offset[std::size_t(m)] += (rest % 3 - 1) * stride[std::size_t(d)];
+  return stride;
+}
 
-  std::vector<std::int64_t> keys;
-  keys.reserve(tile_key.size() * 2);
-  for (const std::int64_t off : offset)
-    for (const std::int64_t key : tile_key) keys.push_back(key + off);
+/// The keys with those before and behind them at a distance: three ascending sequences in one.
+inline std::vector<std::int64_t> with_both_sides(const std::vector<std::int64_t>& keys, std::int64_t distance) {
+  constexpr std::int64_t end = std::numeric_limits<std::int64_t>::max();
+  std::vector<std::int64_t> all;
+  all.reserve(keys.size() * 2);
+  std::array<std::size_t, 3> at{};
+  const auto next = [&](std::size_t k) { return at[k] < keys.size() ? keys[at[k]] + (std::int64_t(k) - 1) * distance : end; };
+  for (std::int64_t least; (least = std::min({next(0), next(1), next(2)})) != end; all.push_back(least))
+    for (std::size_t k = 0; k < 3; ++k) at[k] += next(k) == least;
+  return all;
+}
+
+}  // namespace sort_detail
+
+/// The key of a block, ascending along the last axis first.
+template <int Dim>
+std::int64_t block_key(const Index<Dim>& block, const Index<Dim>& extent) {
+  std::int64_t key = 0;
+  for (std::size_t d = 0; d < Dim; ++d) key = key * extent[d] + block[d];
+  return key;
+}
+
+/// Active blocks, neighbours and contributions of the tiles that sort_particles made.
+template <int S, int Dim>
+void build_blocks(Blocks<Dim>& blocks, const std::vector<std::int64_t>& tile_key, const Index<Dim>& extent) {
+  constexpr std::size_t around = BlockShape<Dim, S>::neighbours;
+  const std::array<std::int64_t, Dim> stride = sort_detail::key_strides<Dim>(extent);
+  std::vector<std::int64_t> keys = tile_key;
   std::sort(keys.begin(), keys.end());
   keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+  for (const std::int64_t distance : stride) keys = sort_detail::with_both_sides(keys, distance);
 
   const std::size_t n = keys.size();
   blocks.index.resize(n), blocks.neighbour.assign(n * around, Blocks<Dim>::none);
-  const auto find = [&](std::int64_t key) {
-    const auto at = std::lower_bound(keys.begin(), keys.end(), key);
-    return at != keys.end() && *at == key ? int(at - keys.begin()) : Blocks<Dim>::none;
-  };
-  std::vector<std::vector<std::uint32_t>> tiles_of(n);
-  for (std::size_t t = 0; t < tile_key.size(); ++t) {
-    blocks.tiles[t].block = std::uint32_t(find(tile_key[t]));
-    tiles_of[blocks.tiles[t].block].push_back(std::uint32_t(t));
-  }
-  blocks.first_contribution.assign(1, 0), blocks.contributions.clear();
   for (std::size_t b = 0; b < n; ++b) {
     std::int64_t rest = keys[b];
-    for (int d = 0; d < Dim; ++d) blocks.index[b][std::size_t(d)] = int(rest / stride[std::size_t(d)]), rest %= stride[std::size_t(d)];
-    for (int m = 0; m < around; ++m) {
-      const int other = find(keys[b] + offset[std::size_t(m)]);
-      blocks.neighbour[b * around + std::size_t(m)] = other;
+    for (std::size_t d = 0; d < Dim; ++d) blocks.index[b][d] = int(rest / stride[d]), rest %= stride[d];
+  }
+  parallel_for_host("jaxmpm::blocks", around, [&](std::size_t m) {  // of neighbour m = (a·3 + b)·3 + c
+    std::int64_t offset = 0;
+    for (std::size_t d = Dim, rest = m; d-- > 0; rest /= 3) offset += (std::int64_t(rest % 3) - 1) * stride[d];
+    for (std::size_t b = 0, other = 0; b < n; ++b) {  // both ascend
+      while (other < n && keys[other] < keys[b] + offset) ++other;
+      if (other < n && keys[other] == keys[b] + offset) blocks.neighbour[b * around + m] = int(other);
+    }
+  });
+
+  std::vector<std::uint32_t> first_of(n + 1, 0), tile_of(tile_key.size());  // the tiles of each block, by body
+  for (std::size_t t = 0; t < tile_key.size(); ++t) {
+    blocks.tiles[t].block = std::uint32_t(std::lower_bound(keys.begin(), keys.end(), tile_key[t]) - keys.begin());
+    ++first_of[blocks.tiles[t].block + 1];
+  }
+  std::partial_sum(first_of.begin(), first_of.end(), first_of.begin());
+  std::vector<std::uint32_t> next(first_of.begin(), first_of.end() - 1);
+  for (std::size_t t = 0; t < tile_key.size(); ++t) tile_of[next[blocks.tiles[t].block]++] = std::uint32_t(t);
+  blocks.first_contribution.assign(1, 0), blocks.contributions.clear();
+  for (std::size_t b = 0; b < n; ++b) {
+    for (std::size_t m = 0; m < around; ++m) {
+      const int other = blocks.neighbour[b * around + m];
       if (other < 0) continue;
-      for (const std::uint32_t t : tiles_of[std::size_t(other)]) blocks.contributions.push_back({t, std::uint32_t(m)});
+      for (std::uint32_t k = first_of[std::size_t(other)]; k < first_of[std::size_t(other) + 1]; ++k)
+        blocks.contributions.push_back({tile_of[k], std::uint32_t(m)});
     }
     blocks.first_contribution.push_back(std::uint32_t(blocks.contributions.size()));
   }

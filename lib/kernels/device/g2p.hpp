@@ -11,10 +11,31 @@ struct StepReport {
                        size = 5;  // unsound: 1 where something went wrong
 };
 
+/// Hands a step's report to the host and begins the next one's.
+struct PublishReport {
+  double *report, *published;
+  JAXMPM_INLINE void operator()(std::size_t) const {
+    for (int k = 0; k < StepReport::size; ++k) published[k] = report[k], report[k] = 0;
+  }
+};
+
 /// One thread's share of it.
+template <class T>
 struct ThreadReport {
-  double fastest = 0, displacement = 0, lost = 0;
-  double unsound = 0;
+  T fastest = 0, displacement = 0;
+  double lost = 0;
+  bool unsound = false;
+};
+
+/// What turns sums over nodes into movements (cells), slopes and moments into gradients (1/s).
+template <class Sch>
+struct GatherScales {
+  using T = typename Sch::T;
+  T move, slope, moment;
+  explicit JAXMPM_INLINE GatherScales(const StepConstants<T>& step)
+      : move(step.dt / step.cell_size),
+        slope(T(1) / step.cell_size),
+        moment(Sch::S > 2 ? T(1 / Bspline<Sch::S>::second_moment) / step.cell_size : T(0)) {}
 };
 
 /// Σ over a particle's stencil of factor × node.
@@ -25,32 +46,40 @@ struct Gathered {
   T value[Dim], change[Dim];              // Σ w v, Σ w Δv
   T moments[Dim][Dim], slopes[Dim][Dim];  // [axis][component] Σ d v, Σ g v
 
-  JAXMPM_INLINE Gathered(const Stencil<Sch>& s, const T* arena) {
+  /// `base`: the stencil's first node in the arena.
+  JAXMPM_INLINE Gathered(const Factors<Sch>& s, int base, const T* arena) {
     constexpr int last = Dim - 1;
     for (int c = 0; c < Dim; ++c) {
       value[c] = change[c] = T(0);
       for (int k = 0; k < Dim; ++k) moments[k][c] = slopes[k][c] = T(0);
     }
-    for (int r = 0; r < Stencil<Sch>::rows; ++r) {
+    JAXMPM_UNROLL
+    for (int r = 0; r < StencilNodes<Sch>::rows; ++r) {
       const auto row = s.row(r);
-      const T* node = arena + 4 * (s.base + row.node);
+      T w[Dim] = {}, d[Dim] = {}, g[Dim] = {}, dv[Dim] = {};  // sums along the row
+      JAXMPM_UNROLL
+      for (int a = 0; a < Sch::S; ++a) {
+        const int node = base + StencilNodes<Sch>::at(r * Sch::S) + a;
+        const Quad<T> v = quad_at(arena, node);
+        for (int c = 0; c < Dim; ++c) {
+          w[c] += s.w[last][a] * v.a[1 + c];
+          if constexpr (Sch::g2p_moments) d[c] += s.d[last][a] * v.a[1 + c];
+          if constexpr (Sch::g2p_slopes) g[c] += s.g[last][a] * v.a[1 + c];
+        }
+        if constexpr (Sch::flip) {
+          const Quad<T> change_of = quad_at(arena + Sch::arena_plane, node);
+          for (int c = 0; c < Dim; ++c) dv[c] += s.w[last][a] * change_of.a[1 + c];
+        }
+      }
       for (int c = 0; c < Dim; ++c) {
-        T w(0), d(0), g(0), dv(0);  // sums along the row
-        for (int a = 0; a < Sch::S; ++a) {
-          const T v = node[4 * a + 1 + c];
-          w += s.w[last][a] * v;
-          if constexpr (Sch::g2p_moments) d += s.d[last][a] * v;
-          if constexpr (Sch::g2p_slopes) g += s.g[last][a] * v;
-          if constexpr (Sch::flip) dv += s.w[last][a] * node[Sch::arena_plane + 4 * a + 1 + c];
-        }
-        value[c] += row.w * w;
-        if constexpr (Sch::flip) change[c] += row.w * dv;
+        value[c] += row.w * w[c];
+        if constexpr (Sch::flip) change[c] += row.w * dv[c];
         for (int k = 0; k < last; ++k) {
-          if constexpr (Sch::g2p_moments) moments[k][c] += row.d[k] * w;
-          if constexpr (Sch::g2p_slopes) slopes[k][c] += row.g[k] * w;
+          if constexpr (Sch::g2p_moments) moments[k][c] += row.d[k] * w[c];
+          if constexpr (Sch::g2p_slopes) slopes[k][c] += row.g[k] * w[c];
         }
-        if constexpr (Sch::g2p_moments) moments[last][c] += row.w * d;
-        if constexpr (Sch::g2p_slopes) slopes[last][c] += row.w * g;
+        if constexpr (Sch::g2p_moments) moments[last][c] += row.w * d[c];
+        if constexpr (Sch::g2p_slopes) slopes[last][c] += row.w * g[c];
       }
     }
   }
@@ -61,6 +90,7 @@ struct GatherTiles {
   using T = typename Sch::T;
   static constexpr int Dim = Sch::Dim;
   static constexpr std::size_t scratch = Sch::arena_size * sizeof(T) + 16;
+  static constexpr int threads = 128, resident = sizeof(T) == 4 ? 4 : 3;
   ParticleFields<T, Dim> particles;
   TileTable<T, Dim> table;
   Law law;
@@ -75,13 +105,20 @@ struct GatherTiles {
     const Tile tile = table.tiles[team.league_rank()];
     const Index<Dim> origin = table.origin(tile);
     T* arena = team_memory<T>(team, Sch::arena_size);
+    const GatherScales<Sch> scales(step);
+    ThreadReport<T> mine;
+    std::size_t p = tile.begin + std::size_t(team.team_rank());
+    Position<Dim> ahead;  // is read one particle ahead of its use
+    if (p < tile.end) ahead = Position<Dim>(particles, p);
     load_arena(team, neighbour + std::size_t(tile.block) * Sch::Shape::neighbours, arena);
     team.team_barrier();
-    ThreadReport mine;
-    team_for(team, int(tile.end - tile.begin), [&](int i) {
-      const std::size_t p = tile.begin + std::size_t(i);
-      update(p, Gathered<Sch>(Stencil<Sch>(particles, p, origin), arena), mine);
-    });
+    while (p < tile.end) {
+      const State state(particles, p, ahead);
+      p += std::size_t(team.team_size());
+      if (p < tile.end) ahead = Position<Dim>(particles, p);
+      const Cell<Sch> cell(state.at, origin);
+      update(state, Gathered<Sch>(Factors<Sch>(cell.offset), cell.base, arena), scales, mine);
+    }
     give_report(team, mine);
   }
 
@@ -94,66 +131,78 @@ struct GatherTiles {
       for (int d = Dim - 1, rest = i; d >= 0; --d, rest /= A) node[std::size_t(d)] = rest % A - 1;
       const Place<Dim> at = locate<Dim>(around, Index<Dim>{}, node);
       for (int plane = 0; plane < Sch::planes; ++plane)
-        for (int k = 0; k < 4; ++k)
-          arena[plane * Sch::arena_plane + 4 * i + k] =
-              grid[std::size_t(at.block) * Sch::own_size + std::size_t(plane * Sch::own_plane + 4 * at.own + k)];
+        quad_at(arena + plane * Sch::arena_plane, i) =
+            quad_at(grid + std::size_t(at.block) * Sch::own_size + plane * Sch::own_plane, at.own);
     });
   }
 
+  /// What a particle has before the step: read at once, as the compiler keeps reads behind the writes that come before them in the text.
+  struct State {
+    static constexpr int history = Law::template history_size<Dim>();
+    std::size_t p;
+    Position<Dim> at;
+    T velocity[Dim], e, h[history > 0 ? history : 1];
+
+    JAXMPM_INLINE State(const ParticleFields<T, Dim>& f, std::size_t particle, const Position<Dim>& position)
+        : p(particle), at(position), e(f.compression(p)) {
+      for (int c = 0; c < Dim; ++c)
+        if constexpr (Sch::flip) velocity[c] = f.velocity(c, p);
+      for (int k = 0; k < history; ++k) h[k] = f.history(k, p);
+    }
+  };
+
   /// Moves a particle and advances its material.
-  JAXMPM_INLINE void update(std::size_t p, const Gathered<Sch>& sum, ThreadReport& mine) const {
+  JAXMPM_INLINE void update(State state, const Gathered<Sch>& sum, const GatherScales<Sch>& per, ThreadReport<T>& mine) const {
+    const std::size_t p = state.p;
     T speed2 = T(0);
     for (int c = 0; c < Dim; ++c) {
       const T pic = sum.value[c];
       T v = pic;
-      if constexpr (Sch::flip) v = step.flip_fraction * (particles.velocity(c, p) + sum.change[c]) + (T(1) - step.flip_fraction) * pic;
+      if constexpr (Sch::flip) v = step.flip_fraction * (state.velocity[c] + sum.change[c]) + (T(1) - step.flip_fraction) * pic;
       particles.velocity(c, p) = v;
       speed2 += v * v;
-      const T move = step.dt / step.cell_size * pic;
-      mine.displacement = max(mine.displacement, double(abs(move)));
-      double& X = particles.position(c, p);
-      X += double(move);
-      if (!(X >= 0.0 && X <= double(cells[std::size_t(c)]))) mine.unsound = 1;
+      const T move = per.move * pic;
+      mine.displacement = max(mine.displacement, abs(move));
+      const double X = state.at.X[c] + double(move);
+      particles.position(c, p) = X;
+      if (!(X >= 0.0 && X <= double(cells[std::size_t(c)]))) mine.unsound = true;
     }
-    const T per_slope = T(1) / step.cell_size;
-    const T per_moment = Sch::S > 2 ? T(1 / Bspline<Sch::S>::second_moment) / step.cell_size : T(0);
     Matrix<T, Dim> H;
     for (int c = 0; c < Dim; ++c)
       for (int k = 0; k < Dim; ++k) {
         if constexpr (Sch::affine)
-          particles.affine(c * Dim + k, p) = Sch::affine_by_moments ? per_moment * sum.moments[k][c] : per_slope * sum.slopes[k][c];
-        const T gradient = Sch::mls ? per_moment * sum.moments[k][c] : per_slope * sum.slopes[k][c];
+          particles.affine(c * Dim + k, p) = Sch::affine_by_moments ? per.moment * sum.moments[k][c] : per.slope * sum.slopes[k][c];
+        const T gradient = Sch::mls ? per.moment * sum.moments[k][c] : per.slope * sum.slopes[k][c];
         H(c, k) = step.dt * gradient;
         if (particles.first_gradient >= 0) particles.gradient(c * Dim + k, p) = gradient;
       }
-    advance(p, H, sqrt(speed2), mine);
+    advance(state, H, sqrt(speed2), mine);
   }
 
-  JAXMPM_INLINE void advance(std::size_t p, const Matrix<T, Dim>& H, T speed, ThreadReport& mine) const {
-    constexpr int history = Law::template history_size<Dim>();
-    T h[history > 0 ? history : 1];
-    for (int k = 0; k < history; ++k) h[k] = particles.history(k, p);
-    T e = particles.compression(p);
-    const T lost = law.template update<T, Dim>(H, step.dt, e, h);
+  JAXMPM_INLINE void advance(State& state, const Matrix<T, Dim>& H, T speed, ThreadReport<T>& mine) const {
+    const std::size_t p = state.p;
+    T& e = state.e;
+    const T lost = law.template update<T, Dim>(H, step.dt, e, state.h);
     particles.compression(p) = e;
-    for (int k = 0; k < history; ++k) particles.history(k, p) = h[k];
-    const T fastest = law.template wave_speed<T, Dim>(e, h) + speed;
+    for (int k = 0; k < State::history; ++k) particles.history(k, p) = state.h[k];
+    const T fastest = law.template wave_speed<T, Dim>(e, state.h) + speed;
     // Comparisons that a NaN fails: nothing but finite values passes.
-    if (!(e > T(-1) && e < T(1e6) && fastest < T(1e18))) mine.unsound = 1;
-    mine.fastest = max(mine.fastest, double(fastest));
+    if (!(e > T(-1) && e < T(1e6) && fastest < T(1e18))) mine.unsound = true;
+    mine.fastest = max(mine.fastest, fastest);
     if (account) mine.lost += double(lost * particles.mass(p) / (law.density * (T(1) + e)));
   }
 
-  /// Adds what the team's threads found to the step's report; most teams find the largest values already there.
-  JAXMPM_INLINE void give_report(const Team<Space>& team, const ThreadReport& mine) const {
-    const double fastest = team_max(team, mine.fastest), displacement = team_max(team, mine.displacement);
-    const double unsound = team_max(team, mine.unsound), lost = account ? team_sum(team, mine.lost) : 0.0;
-    if (team.team_rank() != 0) return;
+  /// Adds what the team's threads found to the step's report; most warps find the largest values already there.
+  JAXMPM_INLINE void give_report(const Team<Space>& team, const ThreadReport<T>& mine) const {
+    const T fastest = warp_max(mine.fastest), displacement = warp_max(mine.displacement);
+    if (mine.unsound) report[StepReport::unsound] = 1;
     const auto raise = [&](int at, double value) {
       if (value > report[at]) Kokkos::atomic_fetch_max(report + at, value);
     };
-    raise(StepReport::fastest, fastest), raise(StepReport::displacement, displacement), raise(StepReport::unsound, unsound);
-    if (account)
+    if (leads_warp(team)) raise(StepReport::fastest, double(fastest)), raise(StepReport::displacement, double(displacement));
+    if (!account) return;
+    const double lost = team_sum(team, mine.lost);
+    if (team.team_rank() == 0)
       Kokkos::atomic_add(report + (Law::template plastic_strain_index<Dim>() >= 0 ? StepReport::plastic : StepReport::viscous), lost);
   }
 };

@@ -18,8 +18,7 @@ struct GridTables {
   std::size_t blocks, wall_blocks;
   const Index<Dim>* index;
   const int* neighbour;
-  const std::uint32_t* first_contribution;
-  const Contribution* contributions;
+  const std::uint32_t *first_arena, *arena_tile;  // [block][neighbour] + 1: the tiles there whose arenas reach the block
   const int* wall_slot;
   const std::uint32_t* wall_block;
   const std::uint32_t* first_obstacle_node;  // [block + 1]
@@ -27,20 +26,22 @@ struct GridTables {
   const ObstacleLaw<T>* obstacle_laws;
   Walls<T, Dim> walls;
   const T* arenas;
-  T *raw, *grid;    // [wall block][own], [block][own]
-  double* contact;  // [block][contact_size]: impulse of each face and obstacle (three values each), friction; null: not recorded
+  T *raw, *grid;     // [wall block][own], [block][own]
+  double* contact;   // [block][contact_size]: impulse of each face and obstacle, three values each; null: not recorded
+  double* friction;  // [block]: work of friction since the last sort, added up; null: not recorded
   std::size_t contact_size;
 
   static constexpr int faces = 6;
+  JAXMPM_INLINE bool recording() const { return contact || friction; }
   JAXMPM_INLINE void record(std::size_t block, int place, const T* impulse) const {
+    if (!contact) return;
     for (int c = 0; c < Dim; ++c)
       if (impulse[c] != T(0)) Kokkos::atomic_add(contact + block * contact_size + std::size_t(3 * place + c), double(impulse[c]));
   }
   JAXMPM_INLINE void record_friction(std::size_t block, T work) const {
-    if (work != T(0)) Kokkos::atomic_add(contact + (block + 1) * contact_size - 1, double(work));
+    if (friction && work != T(0)) Kokkos::atomic_add(friction + block, double(work));
   }
   JAXMPM_INLINE void record(std::size_t block, const ObstacleNode<T, Dim>& node, const ObstacleContact<T, Dim>& done) const {
-    if (!contact) return;
     record(block, faces + int(node.obstacle), done.impulse.a);
     record_friction(block, done.friction_work);
   }
@@ -60,35 +61,44 @@ struct SumNodes {
   }
 
  private:
-  /// Arena node of the neighbour at `offset` that lies on own node `own`, −1 for none.
-  static JAXMPM_INLINE int in_arena(const NeighbourOffset<Dim>& offset, int own) {
-    constexpr int B = Sch::Shape::B;
-    const int step[3] = {offset.a, offset.b, offset.c};
-    int node[3] = {0, 0, 0};
-    for (int d = Dim - 1; d >= 0; --d, own /= B) {
-      const Overlap o = overlap<B, Sch::S>(step[d]);
-      const int i = own % B - o.from;
-      if (i < 0 || i >= o.count) return -1;
-      node[d] = o.in_arena + i;
+  static constexpr int B = Sch::Shape::B;
+
+  /// Along one axis, the neighbours whose arenas reach node `own` of a block: those at the distances from … to. It is node own + 1 − d B
+  /// there.
+  struct Reach {
+    int from, to;
+    explicit JAXMPM_INLINE Reach(int own) : from(own < Sch::S ? -1 : 0), to(own == B - 1 ? 1 : 0) {}
+  };
+  static JAXMPM_INLINE int in_arena(int own, int d) { return own + 1 - d * B; }
+
+  /// Adds what the arenas of the neighbour m hold of a node, at `node` there.
+  JAXMPM_INLINE void add(std::size_t b, int m, int node, T (&sum)[2][4]) const {
+    const std::size_t entry = b * Sch::Shape::neighbours + std::size_t(m);
+    for (std::uint32_t k = table.first_arena[entry]; k < table.first_arena[entry + 1]; ++k) {
+      const T* arena = table.arenas + std::size_t(table.arena_tile[k]) * Sch::arena_size;
+      for (int plane = 0; plane < Sch::planes; ++plane) {
+        const Quad<T> given = quad_at(arena + plane * Sch::arena_plane, node);
+        for (int c = 0; c < 4; ++c) sum[plane][c] += given.a[c];
+      }
     }
-    return Sch::Shape::arena_node(node[0], node[1], node[2]);
   }
 
   JAXMPM_INLINE void update(std::size_t b, int own) const {
     T sum[2][4] = {};
-    for (std::uint32_t k = table.first_contribution[b]; k < table.first_contribution[b + 1]; ++k) {
-      const Contribution from = table.contributions[k];
-      const int node = in_arena(NeighbourOffset<Dim>(int(from.neighbour)), own);
-      if (node < 0) continue;
-      const T* arena = table.arenas + std::size_t(from.tile) * Sch::arena_size + 4 * node;
-      for (int plane = 0; plane < Sch::planes; ++plane)
-        for (int c = 0; c < 4; ++c) sum[plane][c] += arena[plane * Sch::arena_plane + c];
-    }
+    const int i = own / (B * B), j = own / B % B, k = own % B;  // 2D: i = 0
+    const Reach x(i), y(j), z(k);
+    for (int c = Dim == 2 ? 0 : x.from; c <= (Dim == 2 ? 0 : x.to); ++c)
+      for (int d = y.from; d <= y.to; ++d)
+        for (int e = z.from; e <= z.to; ++e) {
+          const int m = ((Dim == 2 ? 0 : c + 1) * 3 + d + 1) * 3 + e + 1;
+          if constexpr (Dim == 2) add(b, m, Sch::Shape::arena_node(in_arena(j, d), in_arena(k, e), 0), sum);
+          else add(b, m, Sch::Shape::arena_node(in_arena(i, c), in_arena(j, d), in_arena(k, e)), sum);
+        }
     const int slot = table.wall_slot[b];
     if (slot < 0) finish(b, own, sum);
-    T* out = (slot < 0 ? table.grid + b * Sch::own_size : table.raw + std::size_t(slot) * Sch::own_size) + 4 * own;
+    T* out = slot < 0 ? table.grid + b * Sch::own_size : table.raw + std::size_t(slot) * Sch::own_size;
     for (int plane = 0; plane < Sch::planes; ++plane)
-      for (int c = 0; c < 4; ++c) out[plane * Sch::own_plane + c] = sum[plane][c];
+      quad_at(out + plane * Sch::own_plane, own) = {{sum[plane][0], sum[plane][1], sum[plane][2], sum[plane][3]}};
   }
 
   JAXMPM_INLINE void finish(std::size_t b, int own, T sum[2][4]) const {
@@ -123,7 +133,7 @@ struct WallNodes {
     const WallSums<T, Dim> raw{neighbours, table.wall_slot, table.raw, planes, first, constants.gravity_step};
     const Node node = node_of<Dim>(first, own);
     const NodeStanding at = standing<T, Dim>(table.walls, node);
-    const bool recorded = table.contact && at.inside;
+    const bool recorded = table.recording() && at.inside;
     const auto obstacles = [&](const Node& asked, T mass, Vector<T, Dim>& v) {
       const Place<Dim> place = locate<Dim>(neighbours, first, asked);
       if (place.block < 0) return;
@@ -146,18 +156,18 @@ struct WallNodes {
   }
 };
 
-/// total[k]: sum of entry k of the contact over all blocks, a team an entry.
+/// total[k]: sum of column k of a table of `rows` rows, a team a column.
 template <class Space>
-struct SumContact {
-  const double* contact;
-  std::size_t blocks, contact_size;
+struct SumColumns {
+  const double* table;
+  std::size_t rows, columns;
   double* total;
   JAXMPM_FUNCTION void operator()(const Team<Space>& team) const {
-    const auto entry = std::size_t(team.league_rank());
+    const auto column = std::size_t(team.league_rank());
     double sum = 0;
-    team_for(team, int(blocks), [&](int b) { sum += contact[std::size_t(b) * contact_size + entry]; });
+    team_for(team, int(rows), [&](int r) { sum += table[std::size_t(r) * columns + column]; });
     sum = team_sum(team, sum);
-    if (team.team_rank() == 0) total[entry] = sum;
+    if (team.team_rank() == 0) total[column] = sum;
   }
 };
 

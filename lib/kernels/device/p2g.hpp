@@ -1,100 +1,83 @@
 #pragma once
-// Particles to grid on a device (Eqs 10–12, B.1, B.2): a team a tile, its arena in shared memory, one particle a thread.
-#include "kernels/device/stencil.hpp"
+// Particles to grid on a device (Eqs 10–12, B.1, B.2): a team a tile. Adding to shared memory costs far more than adding to a register, so
+// the particles are first sorted into the cells where they stand now; a thread then takes one component of all particles of a cell.
+#include "kernels/device/cell_lists.hpp"
+#include "kernels/device/shares.hpp"
 
 namespace jaxmpm {
 
-/// What a particle gives to its nodes: `mass` and `momentum` go with w, columns k of `affine` and `impulse` with the factor of axis k (d; g
-/// or d for the impulse of the internal force, by the gradient's form).
+/// How a team's memory is divided: the arena, where there is room for it, and a chunk of the tile's particles, as many as there is room
+/// for.
 template <class Sch>
-struct ParticleGift {
+struct ScatterMemory {
   using T = typename Sch::T;
-  static constexpr int Dim = Sch::Dim;
-  T mass, momentum[Dim];  // m, m v
-  T affine[Dim][Dim];     // [axis][component] m C Δx
-  T impulse[Dim][Dim];    // [axis][component] −Δt V σ / Δx, mls: D⁻¹ Δx instead of 1/Δx
-
-  template <class Law>
-  JAXMPM_INLINE ParticleGift(const ParticleFields<T, Dim>& f, std::size_t p, const Law& law, const StepConstants<T>& step) {
-    constexpr int history = Law::template history_size<Dim>();
-    T h[history > 0 ? history : 1];
-    for (int k = 0; k < history; ++k) h[k] = f.history(k, p);
-    const T e = f.compression(p);
-    mass = f.mass(p);
-    const Symmetric<T, Dim> sigma = law.template stress<T, Dim>(e, h);
-    const T per_cell = Sch::mls ? T(1 / Bspline<Sch::S>::second_moment) / step.cell_size : T(1) / step.cell_size;
-    const T volume = mass * (-step.dt * per_cell / law.density) / (T(1) + e);  // −Δt V / Δx
-    const T scale = mass * step.cell_size;
-    for (int c = 0; c < Dim; ++c) {
-      momentum[c] = mass * f.velocity(c, p);
-      for (int k = 0; k < Dim; ++k) {
-        impulse[k][c] = volume * sigma(c, k);
-        affine[k][c] = T(0);
-        if constexpr (Sch::affine) affine[k][c] = scale * f.affine(c * Dim + k, p);
-      }
-    }
+  static constexpr int total = 47 * 1024, most = 256, step = sizeof(T) == 4 ? 64 : 32, nodes = Sch::Shape::arena_nodes;
+  static constexpr int of_arena = SpreadArena<Sch>::size * int(sizeof(T));
+  static constexpr int of_chunk(int capacity) {
+    return Records<Sch>::slots(capacity) * Records<Sch>::size * int(sizeof(T)) + int(sizeof(CellLists<nodes, most>)) -
+           2 * (most - capacity);
   }
+  static constexpr bool arena = of_arena + of_chunk(64) <= total;
+  static constexpr int bytes(int capacity) { return (arena ? of_arena : 0) + of_chunk(capacity) + 64; }
+  static constexpr int largest(int capacity) { return bytes(capacity) > total ? largest(capacity - step) : capacity; }
+  static constexpr int capacity = largest(most);
+  using Arena = std::conditional_t<arena, SpreadArena<Sch>, PlainArena<Sch>>;
 };
-
-/// Adds a particle's gift to its team's arena.
-template <class Sch>
-JAXMPM_INLINE void scatter(const Stencil<Sch>& s, const ParticleGift<Sch>& q, typename Sch::T* arena) {
-  using T = typename Sch::T;
-  constexpr int Dim = Sch::Dim, last = Dim - 1;
-  for (int r = 0; r < Stencil<Sch>::rows; ++r) {
-    const auto row = s.row(r);
-    T with_w[Dim], force_w[Dim];  // go with w along the row
-    for (int c = 0; c < Dim; ++c) {
-      with_w[c] = row.w * q.momentum[c], force_w[c] = T(0);
-      for (int k = 0; k < last; ++k) {
-        if constexpr (Sch::affine) with_w[c] += row.d[k] * q.affine[k][c];
-        force_w[c] += (Sch::mls ? row.d[k] : row.g[k]) * q.impulse[k][c];
-      }
-    }
-    for (int a = 0; a < Sch::S; ++a) {
-      const T w = s.w[last][a], d = row.w * s.d[last][a], e = row.w * (Sch::mls ? s.d[last][a] : s.g[last][a]);
-      T* node = arena + 4 * (s.base + row.node + a);
-      Kokkos::atomic_add(node, w * row.w * q.mass);
-      for (int c = 0; c < Dim; ++c) {
-        T momentum = w * with_w[c];
-        if constexpr (Sch::affine) momentum += d * q.affine[last][c];
-        const T impulse = w * force_w[c] + e * q.impulse[last][c];
-        if constexpr (Sch::flip) {
-          Kokkos::atomic_add(node + 1 + c, momentum);
-          Kokkos::atomic_add(node + Sch::arena_plane + 1 + c, impulse);
-        } else {
-          Kokkos::atomic_add(node + 1 + c, momentum + impulse);
-        }
-      }
-    }
-  }
-}
 
 template <class Sch, class Law, class Space>
 struct ScatterTiles {
   using T = typename Sch::T;
-  static constexpr std::size_t scratch = Sch::arena_size * sizeof(T) + 16;
-  ParticleFields<T, Sch::Dim> particles;
-  TileTable<T, Sch::Dim> table;
+  using Memory = ScatterMemory<Sch>;
+  using Arena = typename Memory::Arena;
+  using Sums = CellSums<Sch, Arena>;
+  static constexpr int Dim = Sch::Dim, capacity = Memory::capacity;
+  using Lists = CellLists<Memory::nodes, capacity>;
+  static constexpr std::size_t scratch = std::size_t(Memory::bytes(capacity));
+  static constexpr int threads = capacity >= 192 ? 128 : 64, resident = sizeof(T) == 4 ? 5 : 4;
+  ParticleFields<T, Dim> particles;
+  TileTable<T, Dim> table;
   Law law;
   StepConstants<T> step;
 
   JAXMPM_FUNCTION void operator()(const Team<Space>& team) const {
     const Tile tile = table.tiles[team.league_rank()];
-    const Index<Sch::Dim> origin = table.origin(tile);
-    T* arena = team_memory<T>(team, Sch::arena_size);
-    team_for(team, Sch::arena_size, [&](int i) { arena[i] = T(0); });
-    team.team_barrier();
-    const int count = int(tile.end - tile.begin), threads = team.team_size();
-    for (int first = 0; first < count; first += threads) {
-      const int i = spread_particle(first, team.team_rank(), threads);
-      if (i >= count) continue;
-      const std::size_t p = tile.begin + std::size_t(i);
-      scatter<Sch>(Stencil<Sch>(particles, p, origin), ParticleGift<Sch>(particles, p, law, step), arena);
-    }
-    team.team_barrier();
+    const Index<Dim> origin = table.origin(tile);
     T* out = table.arenas + std::size_t(team.league_rank()) * Sch::arena_size;
-    team_for(team, Sch::arena_size, [&](int i) { out[i] = arena[i]; });
+    T* arena = Memory::arena ? team_memory<T>(team, Arena::size) : out;
+    T* records = team_memory<T>(team, Records<Sch>::slots(capacity) * Records<Sch>::size);
+    Lists& lists = *team_memory<Lists>(team, 1);
+    const ScatterScales<Sch> scales(step, law.density);
+    team_for(team, Arena::size, [&](int i) { arena[i] = T(0); });
+    const std::size_t chunk = chunk_size(tile.end - tile.begin);
+    for (std::size_t first = tile.begin; first < tile.end; first += chunk) {
+      lists.clear(team);
+      team.team_barrier();
+      team_for(team, int(tile.end - first < chunk ? tile.end - first : chunk), [&](int i) {
+        const std::size_t p = first + std::size_t(i);
+        const Cell<Sch> cell(Position<Dim>(particles, p), origin);
+        write_record<Sch>(particles, p, cell, law, scales, records + Records<Sch>::template place<capacity>(i));
+        lists.add(cell.base, i);
+      });
+      team.team_barrier();
+      const int cells = lists.count;
+      team_for(team, cells * Sums::components, [&](int k) { add_component(lists, records, lists.occupied[k % cells], k / cells, arena); });
+      team.team_barrier();
+    }
+    Arena::hand_in(team, arena, out);
+  }
+
+ private:
+  /// Particles of a chunk: equal shares of a tile, of whole storage groups.
+  static JAXMPM_INLINE std::size_t chunk_size(std::size_t count) {
+    constexpr std::size_t most = capacity, group = Records<Sch>::apart;
+    const std::size_t chunks = (count + most - 1) / most, share = (count + chunks - 1) / chunks;
+    return (share + group - 1) / group * group;
+  }
+  static JAXMPM_INLINE void add_component(const Lists& lists, const T* records, int base, int component, T* arena) {
+    Sums sums;
+    for (int i = lists.head[base]; i != Lists::none; i = lists.next[i])
+      sums.add(records + Records<Sch>::template place<capacity>(i), component);
+    sums.give(arena, base, component);
   }
 };
 

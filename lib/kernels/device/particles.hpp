@@ -31,6 +31,10 @@ struct ParticleFields {
 template <class V, class Space>
 using DeviceArray = Kokkos::View<V*, typename Space::memory_space>;
 
+/// An array in the host's memory that kernels of the device write as well.
+template <class V, class Space>
+using PinnedArray = Kokkos::View<V*, PinnedSpace<Space>>;
+
 namespace device_detail {
 template <class V>
 using HostArray = Kokkos::View<V*, Kokkos::HostSpace, Kokkos::MemoryTraits<Kokkos::Unmanaged>>;

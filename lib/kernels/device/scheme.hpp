@@ -5,6 +5,7 @@
 
 #include "kernels/device/g2p.hpp"
 #include "kernels/device/grid.hpp"
+#include "state/sort.hpp"
 
 namespace jaxmpm {
 
@@ -35,6 +36,8 @@ struct DeviceScheme {
   double base_shift = 0;
   std::size_t arena_size = 0, own_size = 0;  // values per tile and per block
   Index<Dim> (*block_extent)(const std::array<int, 3>& cells) = nullptr;
+  void (*sort)(Particles<T, Dim>&, std::uint32_t body, const Index<Dim>& extent, SortScratch<T>&, std::vector<Tile>&,
+               std::vector<std::int64_t>& tile_key) = nullptr;  // of particles on the host
   void (*build_blocks)(Blocks<Dim>&, const std::vector<std::int64_t>& key, const Index<Dim>& extent) = nullptr;
   void (*grid)(const Space&, const GridTables<T, Dim>&, const GridConstants<T, Dim>&) = nullptr;
   std::unique_ptr<BodyKernels<T, Dim, Space>> (*body)(const deck::Material&) = nullptr;

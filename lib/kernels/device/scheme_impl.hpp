@@ -18,13 +18,15 @@ class LawBodyKernels final : public BodyKernels<typename Sch::T, Sch::Dim, Space
   void p2g(const Space& space, std::size_t tiles, const ParticleFields<T, Dim>& particles, const TileTable<T, Dim>& table,
            const StepConstants<T>& step) const override {
     using Kernel = ScatterTiles<Sch, Law, Space>;
-    parallel_for_teams("jaxmpm::p2g", space, tiles, transfer_threads, Kernel::scratch, Kernel{particles, table, law_, step});
+    parallel_for_teams<Kernel::threads, Kernel::resident>("jaxmpm::p2g", space, tiles, Kernel::scratch,
+                                                          Kernel{particles, table, law_, step});
   }
   void g2p(const Space& space, std::size_t tiles, const ParticleFields<T, Dim>& particles, const TileTable<T, Dim>& table,
            const StepConstants<T>& step, const GatherTables<T, Dim>& from) const override {
     using Kernel = GatherTiles<Sch, Law, Space>;
-    parallel_for_teams("jaxmpm::g2p", space, tiles, transfer_threads, Kernel::scratch,
-                       Kernel{particles, table, law_, step, from.neighbour, from.grid, from.cells, from.account, from.report});
+    parallel_for_teams<Kernel::threads, Kernel::resident>(
+        "jaxmpm::g2p", space, tiles, Kernel::scratch,
+        Kernel{particles, table, law_, step, from.neighbour, from.grid, from.cells, from.account, from.report});
   }
 };
 
@@ -33,9 +35,9 @@ namespace device_detail {
 template <class Sch, class Space>
 void update_grid(const Space& space, const GridTables<typename Sch::T, Sch::Dim>& table,
                  const GridConstants<typename Sch::T, Sch::Dim>& constants) {
-  parallel_for_teams("jaxmpm::grid", space, table.blocks, grid_threads, 0, SumNodes<Sch, Space>{table, constants});
-  parallel_for_teams("jaxmpm::walls", space, table.wall_blocks, grid_threads, 0,
-                     WallNodes<typename Sch::T, Sch::Dim, Sch::planes, Space>{table, constants});
+  parallel_for_teams<grid_threads, grid_resident>("jaxmpm::grid", space, table.blocks, 0, SumNodes<Sch, Space>{table, constants});
+  parallel_for_teams<grid_threads, grid_resident>("jaxmpm::walls", space, table.wall_blocks, 0,
+                                                  WallNodes<typename Sch::T, Sch::Dim, Sch::planes, Space>{table, constants});
 }
 
 template <class Sch, class Space>
@@ -55,6 +57,7 @@ DeviceScheme<typename Sch::T, Sch::Dim, Space> scheme_of() {
   s.planes = Sch::planes, s.base_shift = Bspline<S>::base_shift;
   s.arena_size = Sch::arena_size, s.own_size = Sch::own_size;
   s.block_extent = &block_extent<Dim, S>;
+  s.sort = &sort_particles<S, typename Sch::T, Dim>;
   s.build_blocks = &build_blocks<S, Dim>;
   s.grid = &update_grid<Plain, Space>;
   s.body = &make_body<Sch, Space>;

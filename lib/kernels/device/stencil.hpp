@@ -1,5 +1,5 @@
 #pragma once
-// The stencil of one particle, one thread's work, and what a team shares: its tile and its arena.
+// The stencil of one particle, and what a team shares: its tile and its arena.
 #include "core/parallel.hpp"
 #include "kernels/device/particles.hpp"
 #include "kernels/p2g.hpp"
@@ -7,47 +7,93 @@
 
 namespace jaxmpm {
 
-/// Threads of a team in the transfers and in the grid update (one a node).
-inline constexpr int transfer_threads = 128, grid_threads = 64;
+/// Threads of a team in the grid update (one a node), and teams that a processor shall have room for.
+inline constexpr int grid_threads = 64, grid_resident = 16;
 
-/// Factors of a particle along each axis (kernels/scheme.hpp): weight w, moment d = w (X_i − X_p), slope g = dφ/dX; and its base node.
+/// A node's record, which a device loads and stores at once.
+template <class T>
+struct alignas(16) Quad {
+  T a[4];
+};
+/// Record `node` of an array of records; the array begins at a multiple of 16 bytes.
+template <class T>
+JAXMPM_INLINE Quad<T>& quad_at(T* records, int node) {
+  return *reinterpret_cast<Quad<T>*>(records + 4 * node);
+}
+template <class T>
+JAXMPM_INLINE const Quad<T>& quad_at(const T* records, int node) {
+  return *reinterpret_cast<const Quad<T>*>(records + 4 * node);
+}
+
+/// The nodes of a stencil in an arena, in the order of their indices; those of a layer have the same first index.
 template <class Sch>
-struct Stencil {
+struct StencilNodes {
+  static constexpr int S = Sch::S, Dim = Sch::Dim;
+  static constexpr int count(int axes) { return axes == 0 ? 1 : S * count(axes - 1); }
+  static constexpr int all = count(Dim), layer = count(Dim - 1), rows = all / S;
+  /// Node n from the stencil's first.
+  static constexpr int at(int n) {
+    return Dim == 2 ? Sch::Shape::arena_node(n / S, n % S, 0) : Sch::Shape::arena_node(n / (S * S), n / S % S, n % S);
+  }
+};
+
+/// Factors of a particle along each axis (kernels/scheme.hpp): weight w, moment d = w (X_i − X_p) and slope g = dφ/dX of its nodes, from
+/// its offset behind the base node.
+template <class Sch>
+struct Factors {
   using T = typename Sch::T;
   static constexpr int Dim = Sch::Dim, S = Sch::S;
   T w[Dim][S], d[Dim][S], g[Dim][S];
-  int base = 0;  // in the arena
 
-  JAXMPM_INLINE Stencil(const ParticleFields<T, Dim>& particles, std::size_t p, const Index<Dim>& origin) {
+  explicit JAXMPM_INLINE Factors(const T (&offset)[Dim]) {
+    JAXMPM_UNROLL
     for (int axis = 0; axis < Dim; ++axis) {
-      const double X = particles.position(axis, p), b = std::floor(X - Bspline<S>::base_shift);
-      const T f = T(X - b);
-      base = base * Sch::Shape::A + (int(b) - origin[std::size_t(axis)]);
-      Bspline<S>::weights(f, w[axis]);
-      Bspline<S>::slopes(f, g[axis]);
-      for (int a = 0; a < S; ++a) d[axis][a] = w[axis][a] * (T(a) - f);
+      Bspline<S>::weights(offset[axis], w[axis]);
+      Bspline<S>::slopes(offset[axis], g[axis]);
+      JAXMPM_UNROLL
+      for (int a = 0; a < S; ++a) d[axis][a] = w[axis][a] * (T(a) - offset[axis]);
     }
   }
 
-  /// Products over the axes but the last: w of all of them, and with d or g on axis k.
+  /// Products over the axes but the last, for a row of nodes along that: w of all of them, and with d or g on axis k.
   struct Row {
     T w, d[Dim - 1], g[Dim - 1];
-    int node;  // the row's first, from the base
   };
   JAXMPM_INLINE Row row(int r) const {
-    Row row;
     if constexpr (Dim == 2) {
-      row = {w[0][r], {d[0][r]}, {g[0][r]}, Sch::Shape::arena_node(r, 0, 0)};
+      return {w[0][r], {d[0][r]}, {g[0][r]}};
     } else {
       const int a = r / S, b = r % S;
-      row = {w[0][a] * w[1][b],
-             {d[0][a] * w[1][b], w[0][a] * d[1][b]},
-             {g[0][a] * w[1][b], w[0][a] * g[1][b]},
-             Sch::Shape::arena_node(a, b, 0)};
+      return {w[0][a] * w[1][b], {d[0][a] * w[1][b], w[0][a] * d[1][b]}, {g[0][a] * w[1][b], w[0][a] * g[1][b]}};
     }
-    return row;
   }
-  static constexpr int rows = Dim == 2 ? S : S * S;
+};
+
+/// A particle's position, cells.
+template <int Dim>
+struct Position {
+  double X[Dim] = {};
+
+  Position() = default;
+  template <class T>
+  JAXMPM_INLINE Position(const ParticleFields<T, Dim>& particles, std::size_t p) {
+    for (int axis = 0; axis < Dim; ++axis) X[axis] = particles.position(axis, p);
+  }
+};
+
+/// Where a particle stands: its base node in the arena that begins at `origin`, and its offset behind that, in cells.
+template <class Sch>
+struct Cell {
+  int base = 0;
+  typename Sch::T offset[Sch::Dim];
+
+  JAXMPM_INLINE Cell(const Position<Sch::Dim>& at, const Index<Sch::Dim>& origin) {
+    for (int axis = 0; axis < Sch::Dim; ++axis) {
+      const double b = std::floor(at.X[axis] - Bspline<Sch::S>::base_shift);
+      base = base * Sch::Shape::A + (int(b) - origin[std::size_t(axis)]);
+      offset[axis] = typename Sch::T(at.X[axis] - b);
+    }
+  }
 };
 
 /// The tiles of one body, in a device's memory.
@@ -64,12 +110,5 @@ struct TileTable {
     return node;
   }
 };
-
-/// The particle (from the tile's first) that a thread takes when its team works on `threads` of them from `first`: neighbours in storage
-/// mostly share a cell, so a warp takes them eight apart, or its threads would all add to the same nodes.
-JAXMPM_INLINE int spread_particle(int first, int thread, int threads) {
-  const int apart = threads % 8 == 0 ? 8 : 1;
-  return first + thread % (threads / apart) * apart + thread / (threads / apart);
-}
 
 }  // namespace jaxmpm
