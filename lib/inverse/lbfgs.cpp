@@ -14,6 +14,10 @@ namespace {
 /// The first step goes so far, in parts of the variables' scales: the loss is multiplied so that its scaled gradient has this length,
 /// because L-BFGS takes the gradient itself for its first step.
 constexpr double first_step = 0.1;
+/// Unit of the variables that NLopt sees, in parts of their scales. NLopt ends where no component of its gradient exceeds 1e-8 and lets
+/// nobody change that: in this unit it is some 1e-12 of the first gradient, while first_step stays what it is. A power of two keeps bounds
+/// exact.
+constexpr double unit = 1.0 / (1 << 17);
 /// A value that no line search accepts, beyond which NLopt halves its step instead of interpolating (its maxf is 1e20).
 constexpr double unacceptable = 1e30;
 /// Evaluations after which steps that vary are renewed.
@@ -53,7 +57,7 @@ class Leg {
  private:
   Variables scaled(const Variables& u) const {
     Variables w(u.size());
-    for (std::size_t i = 0; i < u.size(); ++i) w[i] = u[i] / loss_.space().scale[i];
+    for (std::size_t i = 0; i < u.size(); ++i) w[i] = u[i] / (unit * loss_.space().scale[i]);
     return w;
   }
 
@@ -75,15 +79,15 @@ class Leg {
 
   double evaluate(Variables u, double* gradient) {
     const SearchSpace& space = loss_.space();
-    for (std::size_t i = 0; i < u.size(); ++i) u[i] *= space.scale[i];
+    for (std::size_t i = 0; i < u.size(); ++i) u[i] *= unit * space.scale[i];
     u = space.projected(std::move(u));  // scaling there and back may lead out of a bound by rounding
     --left_;
     const LossFunction::Sample sample = loss_.gradient(u);
-    for (std::size_t i = 0; i < u.size(); ++i) gradient[i] = sample.gradient[i] * space.scale[i];
+    for (std::size_t i = 0; i < u.size(); ++i) gradient[i] = sample.gradient[i] * unit * space.scale[i];
     if (factor_ == 0) {
       double square = 0;
       for (std::size_t i = 0; i < u.size(); ++i) square += gradient[i] * gradient[i];
-      factor_ = square > 0 ? first_step / std::sqrt(square) : 1;
+      factor_ = square > 0 ? first_step / (unit * std::sqrt(square)) : 1;
     }
     for (std::size_t i = 0; i < u.size(); ++i) gradient[i] *= factor_;
     if (!started_) first_loss_ = sample.loss;

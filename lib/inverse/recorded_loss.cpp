@@ -15,6 +15,14 @@ constexpr double jacobian_spacing = 1e-4;
 
 double half_square(const std::vector<double>& residuals) { return dot(residuals, residuals) / 2; }
 
+/// Residuals that are not masked: a masked one is zero and stays it, whatever the variables do.
+std::size_t telling(const std::vector<double>& residuals, const std::vector<std::vector<double>>& columns) {
+  std::size_t count = 0;
+  for (std::size_t m = 0; m < residuals.size(); ++m)
+    count += residuals[m] != 0 || std::any_of(columns.begin(), columns.end(), [m](const auto& column) { return column[m] != 0; });
+  return count;
+}
+
 Linearisation linearisation_of(const RecordedEvaluation& found) {
   const std::size_t n = found.u.size();
   const auto normal = found.derivative.begin() + static_cast<std::ptrdiff_t>(n);
@@ -135,8 +143,7 @@ void RecordedLoss::compute_linearisation(RecordedEvaluation& evaluation) {
   for (std::size_t i = 0; i < n; ++i) evaluation.derivative.push_back(dot(columns[i], residuals));
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t j = 0; j < n; ++j) evaluation.derivative.push_back(dot(columns[i], columns[j]));
-  const auto masked = std::count(residuals.begin(), residuals.end(), 0.0);
-  evaluation.derivative.push_back(static_cast<double>(residuals.size()) - static_cast<double>(masked));
+  evaluation.derivative.push_back(static_cast<double>(telling(residuals, columns)));
 }
 
 void RecordedLoss::take_costs(const Evaluation& cost, RecordedEvaluation& evaluation) {

@@ -119,6 +119,22 @@ TEST_CASE("Badly scaled losses do not throw L-BFGS off") {
   }
 }
 
+TEST_CASE("L-BFGS goes on after unknowns that the data say much about to those they say little about") {
+  // As friction near the far end of a flow: at the start its derivative is some 1e-9 of the others'.
+  const Variables truth{0.5, 0.2}, weight{1e3, 1e-2};
+  LeastSquares bowl(
+      {{0, 0}, {0, 0}, {1, 1}, {1, 1}},
+      [&](const Variables& u) {
+        return std::vector<double>{weight[0] * (u[0] - truth[0]), weight[1] * (u[1] - truth[1])};
+      },
+      [&](const Variables&) {
+        return std::vector<std::vector<double>>{{weight[0], 0}, {0, weight[1]}};
+      });
+  CHECK(minimise(deck::Lbfgs{60, 10, {}}, bowl) == Ending::converged);
+  CHECK(bowl.best[0] == Approx(truth[0]).epsilon(1e-6));
+  CHECK(bowl.best[1] == Approx(truth[1]).epsilon(1e-3));
+}
+
 TEST_CASE("Where steps vary L-BFGS renews them between its legs and ends when that changes nothing") {
   LeastSquares valley = rosenbrock(plane(-1.2, 1));
   valley.vary = true;

@@ -49,6 +49,7 @@ TEST_CASE("Linearisation: JᵀJ and Jᵀr of data and priors, one-sided at a bou
     CHECK(a.normal(1, 1) == Approx(1 + x * x).epsilon(1e-7));
     CHECK(a.gradient[1] == Approx(y + 8 + x * (x * y + 8)).epsilon(1e-7));
   }
+  CHECK(with_bounds.linearise({1, -8}).residuals == 3);  // residuals that vanish at the minimum still count
   const Linearisation b = with_priors.linearise({x, -7});
   CHECK(b.residuals == 4);
   CHECK(b.normal(0, 0) == Approx(1 + 49 + 4).epsilon(1e-7));
