@@ -25,6 +25,7 @@ def arguments():
     parser.add_argument("--range", type=float, nargs=2, metavar=("LOW", "HIGH"), help="range of the colours (default: that of all frames)")
     parser.add_argument("--out", type=pathlib.Path, help="folder for the pictures (default: pictures/ beside the results)")
     parser.add_argument("--deck-directory", type=pathlib.Path, default=ROOT / "inputs", help="folder of the deck, where its terrain is looked for (default: inputs/)")
+    parser.add_argument("--truth", metavar="RESULTS", help="with inversion.json: results.h5 of the run that was observed; says how far off the values found are")
     parser.add_argument("--no-animation", action="store_true", help="only the pictures")
     parser.add_argument("--animation-frames", type=int, default=80, metavar="N", help="at most so many frames in the animation")
     parser.add_argument("--fps", type=int, default=12, help="frames of the animation a second")
@@ -119,7 +120,7 @@ def main():
     options = arguments()
     inversion = plot_inversion.find(options.results)
     if inversion:
-        return plot_inversion.main(inversion, options.out)
+        return plot_inversion.main(inversion, options.out, options.truth)
     try:
         results = Results(options.results)
     except (OSError, KeyError) as error:

@@ -1,8 +1,13 @@
-"""Picture of an inversion of jaxmpm: loss and unknowns over the iterations, from inversion.json."""
+"""Pictures of an inversion of jaxmpm: loss and unknowns over the iterations, from inversion.json; beside the truth of a twin experiment also what was found
+of it."""
 import json
 import pathlib
 
+import h5py
 import matplotlib
+import numpy as np
+
+from results import Results
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
@@ -39,11 +44,70 @@ def draw(history):
     return figure
 
 
-def main(path, out):
+def number_at(deck, pointer):
+    """The number of a deck at a JSON pointer; None where it has none."""
+    for key in pointer.strip("/").split("/"):
+        deck = deck[int(key)] if isinstance(deck, list) else deck.get(key) if isinstance(deck, dict) else None
+    return deck if isinstance(deck, (int, float)) else None
+
+
+def initial_velocities(path, truth):
+    """By body: positions, velocities found, and the truth's at the start of its run, in the order of ids."""
+    start = truth.frames[0]
+    if start.time != 0:
+        raise SystemExit(f"{truth.path} has no frame at the start, from which to compare initial velocities")
+    with h5py.File(path.with_name("inversion.h5"), "r") as file:
+        found = {name: (body["position"][...], body["velocity"][...]) for name, body in file["bodies"].items() if name in start.bodies}
+    return {name: (position, velocity, start.field("velocity", name)) for name, (position, velocity) in found.items()}
+
+
+def relative_error(velocity, true):
+    """||found - true|| / ||true|| over the initial particles."""
+    return np.linalg.norm(velocity - true) / np.linalg.norm(true)
+
+
+def compare_numbers(history, truth):
+    """Prints each number beside the truth's."""
+    for pointer, found in history["unknowns"].items():
+        true = number_at(truth.deck, pointer)
+        if true is not None and not isinstance(found["value"], list):
+            print(f"{pointer}: found {found['value']:.6g}, true {true:.6g}, difference {found['value'] - true:.2g}")
+
+
+def draw_profiles(bodies):
+    """First component of the initial velocity over the height, found and true."""
+    figure, axes = plt.subplots(1, len(bodies), figsize=(4.8 * len(bodies), 4.2), squeeze=False, layout="constrained")
+    for at, (name, (position, velocity, true)) in zip(axes[0], bodies.items()):
+        at.plot(true[:, 0], position[:, -1], ".", ms=3, color="0.6", label="truth")
+        at.plot(velocity[:, 0], position[:, -1], ".", ms=2, label="found")
+        at.set_title(f"{name}: relative error {relative_error(velocity, true):.2%}", fontsize=10, loc="left")
+        at.set_xlabel("initial velocity, x  m/s"), at.set_ylabel("height  m"), at.legend(), at.grid(alpha=0.3)
+    return figure
+
+
+def compare(path, history, truth, folder):
+    """What a twin experiment found of the truth: numbers, and the initial velocities where they were asked for."""
+    compare_numbers(history, truth)
+    if not any("/velocity/" in pointer or pointer.startswith("/parameters/") for pointer in history["unknowns"]):
+        return
+    bodies = initial_velocities(path, truth)
+    for name, (_, velocity, true) in bodies.items():
+        if velocity.shape != true.shape:
+            return print(f"{name}: the truth has other particles; no velocities to compare")
+        print(f"{name}: relative L2 error of the initial velocity {relative_error(velocity, true):.4g}")
+    save(draw_profiles(bodies), folder / "velocity.png")
+
+
+def save(figure, path):
+    figure.savefig(path, dpi=130)
+    plt.close(figure)
+    print(path)
+
+
+def main(path, out, truth=None):
     history = json.loads(path.read_text(encoding="utf-8"))
     folder = out or path.parent / "pictures"
     folder.mkdir(parents=True, exist_ok=True)
-    figure = draw(history)
-    figure.savefig(folder / "inversion.png", dpi=130)
-    plt.close(figure)
-    print(folder / "inversion.png")
+    save(draw(history), folder / "inversion.png")
+    if truth:
+        compare(path, history, Results(truth), folder)
