@@ -101,7 +101,7 @@ struct Mlp {
   std::vector<int> hidden;
   std::string activation = "relu";
   std::uint64_t seed = 1;
-  Numbers input_scale;
+  Numbers input_center, input_scale;
   double output_scale = 1;
   Numbers weights; /* empty: drawn from the seed */
 };

@@ -32,19 +32,24 @@ void describe(Description<Mlp>& d) {
   d.required("hidden", &Mlp::hidden).from(1).to(4096).items(1, 16).help("Neurons of each hidden layer.");
   d.optional("activation", &Mlp::activation).choices({"relu", "tanh"}).help("Of the hidden layers.");
   d.optional("seed", &Mlp::seed).from(0).help("Of the random initial weights.");
+  d.optional("input_center", &Mlp::input_center)
+      .unit("m")
+      .otherwise("0 for each input", [](Mlp& mlp, const described::Reader&) { mlp.input_center.assign(mlp.inputs.size(), 0.0); })
+      .help("Taken from each input. The middle of the body is a good one.");
   d.optional("input_scale", &Mlp::input_scale)
       .otherwise("1 for each input", [](Mlp& mlp, const described::Reader&) { mlp.input_scale.assign(mlp.inputs.size(), 1.0); })
-      .help("Factor on each input.");
+      .help("Factor on each input, after its center is taken away. Inputs between -1 and 1 train best.");
   d.optional("output_scale", &Mlp::output_scale).unit("m/s").help("Factor on the output.");
   d.optional("weights", &Mlp::weights)
       .items(1)
       .absent_when_empty()
       .otherwise("drawn from the seed")
       .help("Layer by layer: the matrix row by row (one row for each output), then the biases. As an inversion finds them.");
-  d.check({"inputs", "input_scale"}, [](const Mlp& mlp, const described::Place& place) {
-    if (mlp.input_scale.size() != mlp.inputs.size())
-      place.problem("input_scale", "must have one number for each of inputs, " + std::to_string(mlp.inputs.size()) + ", found " +
-                                       std::to_string(mlp.input_scale.size()));
+  d.check({"inputs", "input_center", "input_scale"}, [](const Mlp& mlp, const described::Place& place) {
+    for (const auto& [key, numbers] : {std::pair{"input_center", &mlp.input_center}, std::pair{"input_scale", &mlp.input_scale}})
+      if (numbers->size() != mlp.inputs.size())
+        place.problem(key, "must have one number for each of inputs, " + std::to_string(mlp.inputs.size()) + ", found " +
+                               std::to_string(numbers->size()));
     for (std::size_t i = 0; i < mlp.inputs.size(); ++i)
       if (mlp.inputs[i] == "z" && place.reader.dimension() == 2)
         place.key("inputs").item(i).problem("there is no z in a 2D domain; remove it");

@@ -22,7 +22,8 @@ std::vector<double> initial_weights(const std::vector<int>& widths, std::uint64_
   for (std::size_t l = 0; l + 1 < widths.size(); ++l) {
     const double deviation = std::sqrt(2.0 / widths[l]);
     for (int i = 0; i < widths[l] * widths[l + 1]; ++i) weights.push_back(deviation * random.normal());
-    weights.insert(weights.end(), widths[l + 1], 0.0);
+    const double width = l + 2 < widths.size() ? 1 / std::sqrt(widths[l]) : 0;
+    for (int j = 0; j < widths[l + 1]; ++j) weights.push_back(width * (2 * random.uniform() - 1));
   }
   return weights;
 }
@@ -30,7 +31,10 @@ std::vector<double> initial_weights(const std::vector<int>& widths, std::uint64_
 }  // namespace
 
 Mlp::Mlp(const deck::Mlp& description, int dim, const std::string& pointer)
-    : scale_(description.input_scale), tanh_(description.activation == "tanh"), output_scale_(description.output_scale) {
+    : center_(description.input_center),
+      scale_(description.input_scale),
+      tanh_(description.activation == "tanh"),
+      output_scale_(description.output_scale) {
   if (!tanh_ && description.activation != "relu")
     throw DeckError(pointer + "/activation", "unknown activation '" + description.activation + "'; valid are relu, tanh");
   for (std::size_t i = 0; i < description.inputs.size(); ++i) {
@@ -40,10 +44,12 @@ Mlp::Mlp(const deck::Mlp& description, int dim, const std::string& pointer)
                       "'" + description.inputs[i] + "' is no coordinate; valid are " + (dim == 3 ? "x, y, z" : "x, y"));
   }
   if (inputs_.empty()) throw DeckError(pointer + "/inputs", "a network needs at least one input coordinate");
+  if (center_.empty()) center_.assign(inputs_.size(), 0.0);
   if (scale_.empty()) scale_.assign(inputs_.size(), 1.0);
-  if (scale_.size() != inputs_.size())
-    throw DeckError(pointer + "/input_scale",
-                    "give one factor for each input (" + std::to_string(inputs_.size()) + "), here are " + std::to_string(scale_.size()));
+  for (const auto& [key, numbers] : {std::pair{"/input_center", &center_}, std::pair{"/input_scale", &scale_}})
+    if (numbers->size() != inputs_.size())
+      throw DeckError(pointer + key, "give one number for each input (" + std::to_string(inputs_.size()) + "), here are " +
+                                         std::to_string(numbers->size()));
   widths_.push_back(static_cast<int>(inputs_.size()));
   for (std::size_t i = 0; i < description.hidden.size(); ++i) {
     if (description.hidden[i] < 1) throw DeckError(pointer + "/hidden/" + std::to_string(i), "a layer has at least one neuron");
@@ -58,7 +64,7 @@ Mlp::Mlp(const deck::Mlp& description, int dim, const std::string& pointer)
 
 std::vector<std::vector<double>> Mlp::layers(const std::array<double, 3>& place) const {
   std::vector<std::vector<double>> values(widths_.size());
-  for (std::size_t i = 0; i < inputs_.size(); ++i) values[0].push_back(scale_[i] * place[inputs_[i]]);
+  for (std::size_t i = 0; i < inputs_.size(); ++i) values[0].push_back(scale_[i] * (place[inputs_[i]] - center_[i]));
   const double* w = weights_.data();
   for (std::size_t l = 0; l + 1 < widths_.size(); ++l) {
     const double* bias = w + static_cast<std::size_t>(widths_[l]) * widths_[l + 1];

@@ -87,6 +87,7 @@ TEST_CASE("a network's derivatives by its weights") {
     description.inputs = {"x", "y"};
     description.hidden = {5, 4, 3};
     description.activation = activation;
+    description.input_center = {0.1, -0.2};
     description.input_scale = {2, 3};
     description.output_scale = 1.5;
     description.seed = 4;

@@ -45,6 +45,11 @@ TEST_CASE("A network is the sum it should be, and its start depends on the seed 
   weighted.activation = description.activation = "tanh";
   const Mlp smooth(weighted, 2, "/mlp");
   CHECK(smooth.value({0.1, 0.2, 0}) == Approx(3 * (4 * std::tanh(2.7) + 5 * std::tanh(-1.95) + 6)));
+  weighted.input_center = {0.05, -0.1};
+  CHECK(Mlp(weighted, 2, "/mlp").value({0, 0.25, 0}) == Approx(smooth.value({0.1, 0.2, 0})));  // of y and x
+  weighted.input_center = {0.05};
+  CHECK_THROWS_WITH(Mlp(weighted, 2, "/mlp"), Catch::Contains("/mlp/input_center"));
+  weighted.input_center = {};
   CHECK(Mlp(description, 2, "/mlp").weights() == Mlp(description, 2, "/mlp").weights());
   const auto first = Mlp(description, 2, "/mlp").weights();
   description.seed = 2;
@@ -63,6 +68,10 @@ TEST_CASE("A network's weights start with the variance of He et al.") {
   double square = 0;
   for (std::size_t k = 200; k < 200 + 100 * 200; ++k) square += mlp.weights()[k] * mlp.weights()[k];
   CHECK(square / (100 * 200) == Approx(2.0 / 100).epsilon(0.03));
+  const auto biases = mlp.weights().begin() + 200 + 100 * 200;
+  CHECK(*std::max_element(biases, biases + 200) == Approx(0.1).epsilon(0.05));  // 1/√100
+  CHECK(*std::min_element(biases, biases + 200) == Approx(-0.1).epsilon(0.05));
+  CHECK(mlp.weights().back() == 0);
 }
 
 TEST_CASE("Random numbers: reference values of SplitMix64, moments, independent streams") {
