@@ -48,6 +48,7 @@ void check_profile(const ProfileObservation& observed, const Place& place) {
   if (observed.from_time) place.problem("from_time", "has no effect on a profile, which is at one time; give that as `time`");
   if (observed.to_time) place.problem("to_time", "has no effect on a profile, which is at one time; give that as `time`");
   if (observed.every) place.problem("every", "has no effect on a profile, which is at one time; remove it");
+  if (observed.average) place.problem("average", "has no effect on a profile, which is at one time; remove it");
 }
 
 void check_time(const std::optional<double>& time, const std::string& key, double end, const Place& place) {

@@ -42,6 +42,11 @@ void describe_observed(Description<T>& d) {
       .help("Earlier rows are left out.");
   d.optional("to_time", own(&Observed::to_time)).unit("s").from(0).otherwise("the end").help("Later rows are left out.");
   d.optional("every", own(&Observed::every)).unit("s").above(0).otherwise("every row").help("Time between the rows that count.");
+  d.optional("average", own(&Observed::average))
+      .unit("s")
+      .above(0)
+      .word("none")
+      .help("Means over windows of this length, counted from the first row that counts, are compared instead of single rows.");
   d.optional("weight", own(&Observed::weight)).above(0).help("In the loss.");
   d.optional("noise", own(&Observed::noise)).word("none").help("Added to the observed values.");
   d.optional("mask", own(&Observed::mask)).help("What counts: \"none\", the name of a CSV column, or a box.");

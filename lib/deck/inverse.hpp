@@ -39,7 +39,7 @@ using Mask = std::variant<std::monostate, std::string, Box>;  // nothing: "none"
 /// What all kinds of observation share.
 struct Observed {
   std::string file;
-  std::optional<double> from_time, to_time, every;
+  std::optional<double> from_time, to_time, every, average;
   double weight = 1;
   std::optional<Noise> noise;
   Mask mask;

@@ -1,6 +1,5 @@
 #include "inverse/observation.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 namespace jaxmpm {
@@ -8,19 +7,19 @@ namespace {
 
 class ObservedParticles : public Observation {
  public:
-  ObservedParticles(std::vector<ObservedRow> rows, double weight, const std::string& field, std::size_t body, const Model& model)
-      : Observation(std::move(rows), weight), field_(output_field(field)), body_(body), particles_(model.bodies[body].initial.id.size()) {}
+  ObservedParticles(ObservedData data, double weight, const std::string& field, std::size_t body, const Model& model)
+      : Observation(std::move(data), weight), field_(output_field(field)), body_(body), particles_(model.bodies[body].initial.id.size()) {}
   FieldSelection needs() const override { return selection({field_.name}); }
-  void look(const RowRange& range, const Moment&, const std::vector<BodySnapshot>& bodies, double* residuals) override {
+  void look(const RowRange& range, const Moment&, const std::vector<BodySnapshot>& bodies, double* differences) override {
     const std::vector<double>& values = bodies[body_].*field_.values;
     for (std::size_t r = range.first; r < range.last; ++r)
       for (std::size_t k = 0; k < width(); ++k)
-        *residuals++ = scale(rows()[r]) * (values[rows()[r].subject * width() + k] - rows()[r].value[k]);
+        *differences++ = scale(rows()[r]) * (values[rows()[r].subject * width() + k] - rows()[r].value[k]);
   }
-  void add_gradient(const RowRange& range, const double* residuals, SnapshotGradient& into) const override {
+  void add_gradient(const RowRange& range, const double* by_differences, SnapshotGradient& into) const override {
     for (std::size_t r = range.first; r < range.last; ++r)
       for (std::size_t k = 0; k < width(); ++k)
-        add_field_gradient(field_, *residuals++ * scale(rows()[r]), rows()[r].subject, k, width(), particles_, into[body_]);
+        add_field_gradient(field_, *by_differences++ * scale(rows()[r]), rows()[r].subject, k, width(), particles_, into[body_]);
   }
 
  private:
@@ -54,66 +53,71 @@ std::vector<SparseField> sparse(const SnapshotGradient& gradient) {
   return fields;
 }
 
-/// Gauges are differentiated while they look: the state is not there afterwards.
+/// Gauges are differentiated while they look, number by number: the state is not there afterwards, when it is known how much each counts.
 class ObservedGauges : public Observation {
  public:
-  ObservedGauges(std::vector<ObservedRow> rows, double weight, std::vector<std::unique_ptr<Gauge>> gauges, const Model& model)
-      : Observation(std::move(rows), weight), gauges_(std::move(gauges)), bodies_(model.bodies.size()), read_(this->rows().size(), true) {
-    gradients_.resize(this->rows().size());
+  ObservedGauges(ObservedData data, double weight, std::vector<std::unique_ptr<Gauge>> gauges, const Model& model)
+      : Observation(std::move(data), weight), gauges_(std::move(gauges)), bodies_(model.bodies.size()), read_(rows().size(), true) {
+    derivatives_.resize(rows().size() * width());
   }
   FieldSelection needs() const override {
     FieldSelection fields;
     for (const auto& gauge : gauges_) fields = fields | gauge->needs();
     return fields;
   }
-  void look(const RowRange& range, const Moment& now, const std::vector<BodySnapshot>& bodies, double* residuals) override {
+  void look(const RowRange& range, const Moment& now, const std::vector<BodySnapshot>& bodies, double* differences) override {
     const ContactForces forces;
     const Scene scene{now, bodies, forces, {}};
-    SnapshotGradient gradient(bodies_);
-    for (std::size_t r = range.first; r < range.last; ++r, residuals += width()) {
-      const ObservedRow& row = rows()[r];
-      const Gauge& gauge = *gauges_[row.subject];
-      const Sample reading = gauge.measure(scene, nullptr);
+    for (std::size_t r = range.first; r < range.last; ++r) {
+      const Sample reading = gauges_[rows()[r].subject]->measure(scene, nullptr);
       read_[r] = reading.valid;
-      std::vector<double> by_values(width(), 0.0);
       for (std::size_t k = 0; k < width(); ++k) {
-        residuals[k] = reading.valid ? scale(row) * (reading.values[k] - row.value[k]) : 0;
-        by_values[k] = scale(row) * residuals[k];
+        *differences++ = reading.valid ? scale(rows()[r]) * (reading.values[k] - rows()[r].value[k]) : 0;
+        derivatives_[r * width() + k] = derivative(r, k, scene, reading);
       }
-      if (reading.valid) gauge.gradient(scene, reading, by_values.data(), gradient);
-    }
-    gradients_[range.first] = sparse(gradient);
-  }
-  void add_gradient(const RowRange& range, const double*, SnapshotGradient& into) const override {
-    for (const SparseField& part : gradients_[range.first]) {
-      double* values = gradient_of(part.field, into[part.body], part.size);
-      for (std::size_t i = 0; i < part.at.size(); ++i) values[part.at[i]] += part.value[i];
     }
   }
-  std::size_t unread() const override { return static_cast<std::size_t>(std::count(read_.begin(), read_.end(), false)); }
+  void add_gradient(const RowRange& range, const double* by_differences, SnapshotGradient& into) const override {
+    for (std::size_t d = range.first * width(); d < range.last * width(); ++d, ++by_differences)
+      for (const SparseField& part : derivatives_[d]) {
+        double* values = gradient_of(part.field, into[part.body], part.size);
+        for (std::size_t i = 0; i < part.at.size(); ++i) values[part.at[i]] += *by_differences * part.value[i];
+      }
+  }
+  bool was_read(std::size_t row) const override { return read_[row]; }
 
  private:
+  /// Of difference k of a row by the state.
+  std::vector<SparseField> derivative(std::size_t row, std::size_t k, const Scene& scene, const Sample& reading) const {
+    if (!reading.valid) return {};
+    std::vector<double> by_values(width(), 0.0);
+    by_values[k] = scale(rows()[row]);
+    SnapshotGradient gradient(bodies_);
+    gauges_[rows()[row].subject]->gradient(scene, reading, by_values.data(), gradient);
+    return sparse(gradient);
+  }
+
   std::vector<std::unique_ptr<Gauge>> gauges_;
   std::size_t bodies_;
-  std::vector<bool> read_;                           // of each row
-  std::vector<std::vector<SparseField>> gradients_;  // of the rows of one time, at the place of the first of them
+  std::vector<bool> read_;                             // of each row
+  std::vector<std::vector<SparseField>> derivatives_;  // of each number of each row
 };
 
 }  // namespace
 
-Observation::Observation(std::vector<ObservedRow> rows, double weight)
-    : rows_(std::move(rows)), root_weight_(std::sqrt(weight)), width_(rows_.at(0).value.size()) {}
+Observation::Observation(ObservedData data, double weight)
+    : rows_(std::move(data.rows)), root_weight_(std::sqrt(weight)), width_(rows_.at(0).value.size()), groups_(data.groups) {}
 
 double Observation::scale(const ObservedRow& row) const { return root_weight_ / row.sigma; }
 
-std::unique_ptr<Observation> observe_particles(std::vector<ObservedRow> rows, double weight, const std::string& field, std::size_t body,
+std::unique_ptr<Observation> observe_particles(ObservedData data, double weight, const std::string& field, std::size_t body,
                                                const Model& model) {
-  return std::make_unique<ObservedParticles>(std::move(rows), weight, field, body, model);
+  return std::make_unique<ObservedParticles>(std::move(data), weight, field, body, model);
 }
 
-std::unique_ptr<Observation> observe_gauges(std::vector<ObservedRow> rows, double weight, std::vector<std::unique_ptr<Gauge>> gauges,
+std::unique_ptr<Observation> observe_gauges(ObservedData data, double weight, std::vector<std::unique_ptr<Gauge>> gauges,
                                             const Model& model) {
-  return std::make_unique<ObservedGauges>(std::move(rows), weight, std::move(gauges), model);
+  return std::make_unique<ObservedGauges>(std::move(data), weight, std::move(gauges), model);
 }
 
 }  // namespace jaxmpm

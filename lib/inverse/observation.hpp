@@ -14,17 +14,19 @@ struct RowRange {
 
 class Observation {
  public:
-  Observation(std::vector<ObservedRow> rows, double weight);
+  Observation(ObservedData data, double weight);
   virtual ~Observation() = default;
   const std::vector<ObservedRow>& rows() const { return rows_; }
-  std::size_t width() const { return width_; }  ///< numbers in a row
+  std::size_t width() const { return width_; }    ///< numbers in a row
+  std::size_t groups() const { return groups_; }  ///< of rows that make one residual
   virtual FieldSelection needs() const = 0;
-  /// Compares the rows of one time with a state: writes width() residuals for each, and keeps what gradient() needs.
-  virtual void look(const RowRange& range, const Moment& now, const std::vector<BodySnapshot>& bodies, double* residuals) = 0;
-  /// Adds Σ residual · ∂residual/∂(state) for rows that were looked at; `residuals` are those that look() wrote.
-  virtual void add_gradient(const RowRange& range, const double* residuals, SnapshotGradient& into) const = 0;
-  /// Rows of the last run that had no material to read.
-  virtual std::size_t unread() const { return 0; }
+  /// Compares the rows of one time with a state: writes width() differences √w (reading − value)/σ for each, and keeps what add_gradient()
+  /// needs. A row that has no material to read gives zeros.
+  virtual void look(const RowRange& range, const Moment& now, const std::vector<BodySnapshot>& bodies, double* differences) = 0;
+  /// Adds Σ by_difference · ∂difference/∂(state) for rows that were looked at.
+  virtual void add_gradient(const RowRange& range, const double* by_differences, SnapshotGradient& into) const = 0;
+  /// Whether the last run had material to read at a row.
+  virtual bool was_read(std::size_t) const { return true; }
 
  protected:
   /// √w/σ of a row.
@@ -33,14 +35,14 @@ class Observation {
  private:
   std::vector<ObservedRow> rows_;
   double root_weight_;
-  std::size_t width_;
+  std::size_t width_, groups_;
 };
 
 /// A vector field (position or velocity) of particles of one body.
-std::unique_ptr<Observation> observe_particles(std::vector<ObservedRow> rows, double weight, const std::string& field, std::size_t body,
+std::unique_ptr<Observation> observe_particles(ObservedData data, double weight, const std::string& field, std::size_t body,
                                                const Model& model);
 /// Readings of gauges, one for each subject of the rows.
-std::unique_ptr<Observation> observe_gauges(std::vector<ObservedRow> rows, double weight, std::vector<std::unique_ptr<Gauge>> gauges,
+std::unique_ptr<Observation> observe_gauges(ObservedData data, double weight, std::vector<std::unique_ptr<Gauge>> gauges,
                                             const Model& model);
 
 }  // namespace jaxmpm

@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/error.hpp"
 #include "inverse/observation.hpp"
@@ -18,20 +19,20 @@ namespace {
 struct Due {
   std::size_t observation;
   RowRange range;
-  std::size_t residual;  // place of the first one
+  std::size_t difference;  // place of the first one
 };
 
 class Observations : public Observer {
  public:
   Observations(std::vector<std::unique_ptr<Observation>> observations, const Model& model, double end)
       : observations_(std::move(observations)), bodies_(model.bodies.size()) {
-    std::size_t residuals = 0;
     for (const auto& observation : observations_) {
       for (const ObservedRow& row : observation->rows()) times_.push_back(row.time);
-      first_residual_.push_back(residuals);
-      residuals += observation->rows().size() * observation->width();
+      first_difference_.push_back(differences_.size());
+      differences_.resize(differences_.size() + observation->rows().size() * observation->width());
+      first_residual_.push_back(residuals_.size());
+      residuals_.resize(residuals_.size() + observation->groups() * observation->width());
     }
-    residuals_.resize(residuals);
     merge_times(same_time * end);
     for (std::size_t o = 0; o < observations_.size(); ++o) schedule(o);
   }
@@ -42,8 +43,10 @@ class Observations : public Observer {
     return fields;
   }
   void look(std::size_t index, const Moment& now, const std::vector<BodySnapshot>& bodies) override {
-    for (const Due& due : due_[index]) observations_[due.observation]->look(due.range, now, bodies, &residuals_[due.residual]);
+    for (const Due& due : due_[index]) observations_[due.observation]->look(due.range, now, bodies, &differences_[due.difference]);
     if (index + 1 < times_.size()) return;
+    std::fill(residuals_.begin(), residuals_.end(), 0.0);
+    for (std::size_t o = 0; o < observations_.size(); ++o) average(o);
     loss_ = 0;
     for (const double residual : residuals_) loss_ += 0.5 * residual * residual;
     warn_of_unread();
@@ -52,7 +55,7 @@ class Observations : public Observer {
   const std::vector<double>& residuals() const override { return residuals_; }
   SnapshotGradient gradient(std::size_t index) const override {
     SnapshotGradient gradient(bodies_);
-    for (const Due& due : due_[index]) observations_[due.observation]->add_gradient(due.range, &residuals_[due.residual], gradient);
+    for (const Due& due : due_[index]) observations_[due.observation]->add_gradient(due.range, &differences_[due.difference], gradient);
     return gradient;
   }
 
@@ -71,28 +74,52 @@ class Observations : public Observer {
   std::size_t index_of(double time) const {
     return static_cast<std::size_t>(std::upper_bound(times_.begin(), times_.end(), time) - times_.begin()) - 1;
   }
+  /// A group's residual is R = Σ d/√n of its n differences that could be read: √n times their mean, so that the loss keeps its size and
+  /// noise of deviation 1 in the rows gives R the deviation 1. The differences become ∂(R²/2)/∂d = R/√n.
+  void average(std::size_t o) {
+    const Observation& observation = *observations_[o];
+    const std::size_t width = observation.width();
+    double *difference = differences_.data() + first_difference_[o], *residual = residuals_.data() + first_residual_[o];
+    std::vector<double> count(observation.groups(), 0.0);
+    for (std::size_t r = 0; r < observation.rows().size(); ++r) count[observation.rows()[r].group] += observation.was_read(r);
+    for (std::size_t r = 0; r < observation.rows().size(); ++r) {
+      const std::size_t group = observation.rows()[r].group;
+      for (std::size_t k = 0; k < width && count[group] > 0; ++k)
+        residual[group * width + k] += difference[r * width + k] / std::sqrt(count[group]);
+    }
+    for (std::size_t r = 0; r < observation.rows().size(); ++r) {
+      const std::size_t group = observation.rows()[r].group;
+      for (std::size_t k = 0; k < width && count[group] > 0; ++k)
+        difference[r * width + k] = residual[group * width + k] / std::sqrt(count[group]);
+    }
+  }
   void schedule(std::size_t o) {
     const std::vector<ObservedRow>& rows = observations_[o]->rows();
     for (std::size_t r = 0; r < rows.size(); ++r) {
       std::vector<Due>& due = due_[index_of(rows[r].time)];
-      if (due.empty() || due.back().observation != o) due.push_back({o, {r, r}, first_residual_[o] + r * observations_[o]->width()});
+      if (due.empty() || due.back().observation != o) due.push_back({o, {r, r}, first_difference_[o] + r * observations_[o]->width()});
       due.back().range.last = r + 1;
     }
   }
   /// Once: later runs of an inversion would repeat it at each iteration.
   void warn_of_unread() {
-    for (std::size_t o = 0; o < observations_.size() && !warned_; ++o)
-      if (const std::size_t unread = observations_[o]->unread(); unread > 0)
+    for (std::size_t o = 0; o < observations_.size() && !warned_; ++o) {
+      const std::size_t rows = observations_[o]->rows().size();
+      std::size_t unread = 0;
+      for (std::size_t r = 0; r < rows; ++r) unread += !observations_[o]->was_read(r);
+      if (unread > 0)
         spdlog::warn("/inverse/observations/{}: at {} of {} rows the run has no material to read; they do not count in the loss.", o,
-                     unread, observations_[o]->rows().size());
+                     unread, rows);
+    }
     warned_ = true;
   }
 
   std::vector<std::unique_ptr<Observation>> observations_;
   std::size_t bodies_;
   std::vector<double> times_;
-  std::vector<std::vector<Due>> due_;        // at each time
-  std::vector<std::size_t> first_residual_;  // of each observation
+  std::vector<std::vector<Due>> due_;                           // at each time
+  std::vector<std::size_t> first_difference_, first_residual_;  // of each observation
+  std::vector<double> differences_;                             // after the last look, the loss's derivatives by them
   std::vector<double> residuals_;
   double loss_ = 0;
   bool warned_ = false;
@@ -104,10 +131,10 @@ struct Prepare {
   const ObservationPlace& place;
   std::size_t index;
 
-  std::vector<ObservedRow> ready(std::vector<ObservedRow> rows, const deck::Observed& observed) const {
+  ObservedData ready(std::vector<ObservedRow> rows, const deck::Observed& observed) const {
     rows = within_window(std::move(rows), observed, place);
     add_noise(rows, observed.noise, index);
-    return rows;
+    return grouped(std::move(rows), observed.average);
   }
   std::unique_ptr<Observation> operator()(const deck::ParticlesObservation& observed) const {
     const std::size_t body = body_index(place.model, observed.body, place.pointer + "/body");
@@ -118,8 +145,8 @@ struct Prepare {
     if (wanted == deck.gauges.end()) throw DeckError(place.pointer + "/gauge", "there is no gauge '" + observed.gauge + "'.");
     std::vector<std::unique_ptr<Gauge>> gauges;
     gauges.push_back(std::visit([&](const auto& kind) { return make_gauge(kind, place.model); }, wanted->second));
-    std::vector<ObservedRow> rows = ready(read_gauge(observed, place, *gauges[0]), observed);
-    return observe_gauges(std::move(rows), observed.weight, std::move(gauges), place.model);
+    ObservedData data = ready(read_gauge(observed, place, *gauges[0]), observed);
+    return observe_gauges(std::move(data), observed.weight, std::move(gauges), place.model);
   }
   std::unique_ptr<Observation> operator()(const deck::ProfileObservation& observed) const {
     const std::size_t body = body_index(place.model, observed.body, place.pointer + "/body");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "fields/files.hpp"
 #include "fields/random.hpp"
@@ -48,6 +49,17 @@ std::vector<ObservedRow> within_window(std::vector<ObservedRow> rows, const deck
     place.bad_file(0, "no row lies between " + number_text(from) + " s and " + number_text(to) +
                           " s, where the run is observed; the rows are from " + number_text(first) + " s to " + number_text(last) + " s");
   return kept;
+}
+
+ObservedData grouped(std::vector<ObservedRow> rows, std::optional<double> average) {
+  std::map<std::pair<double, std::size_t>, std::size_t> groups;  // by window and subject, in the order of their first rows
+  std::size_t own = 0;
+  for (ObservedRow& row : rows)
+    row.group =
+        average
+            ? groups.try_emplace({std::floor((row.time - rows[0].time) / *average + same_time), row.subject}, groups.size()).first->second
+            : own++;
+  return {std::move(rows), average ? groups.size() : own};
 }
 
 void add_noise(std::vector<ObservedRow>& rows, const std::optional<deck::Noise>& noise, std::size_t index) {

@@ -68,7 +68,7 @@ inline const char* const full_deck = R"({
       "shape": { "layer": { "height_map": { "file": "g.asc", "offset": [1, 2, 3], "vertical_scale": 2 }, "thickness": 0.1,
                             "area": [[0.3, 0], [0.5, 0], [0.5, 0.5]] } } },
     { "name": "ball", "material": "rubber", "initial_stress": { "kind": "geostatic", "surface": { "point": [0, 0, 0.1] } },
-      "velocity": [0, { "mlp": { "inputs": ["x", "z"], "hidden": [8, 8], "activation": "tanh", "seed": 3, "input_scale": [1, 2], "output_scale": 0.1 } }, -1],
+      "velocity": [0, { "mlp": { "inputs": ["x", "z"], "hidden": [8, 8], "activation": "tanh", "seed": 3, "input_center": [0.5, 0.1], "input_scale": [1, 2], "output_scale": 0.1 } }, -1],
       "shape": { "union": [ { "sphere": { "center": [0.7, 0.2, 0.2], "radius": 0.1 } }, { "mesh": { "file": "b.stl", "scale": 0.1 } } ] } },
     { "name": "rod", "material": "steel", "velocity": { "particles": { "file": "v.csv" } },
       "shape": { "layer": { "height_map": { "file": "g.asc" }, "thickness": 0.1, "area": { "file": "a.csv" } } } }
@@ -95,7 +95,7 @@ inline const char* const full_deck = R"({
                   { "path": "/bodies/2/velocity/1/mlp", "prior": { "mean": 0, "deviation": 1 } },
                   { "path": "/materials/*/density", "start": 1200, "share": true, "transform": "log" } ],
     "observations": [
-      { "kind": "particles", "body": "pool", "field": "position", "file": "t.h5", "select": { "random": 500, "seed": 1 }, "from_time": 0, "to_time": 0.7, "every": 0.1 },
+      { "kind": "particles", "body": "pool", "field": "position", "file": "t.h5", "select": { "random": 500, "seed": 1 }, "from_time": 0, "to_time": 0.7, "every": 0.1, "average": 0.2 },
       { "kind": "gauge", "gauge": "front", "file": "g.csv", "weight": 2, "noise": { "deviation": 0.1, "seed": 2 }, "mask": "good" },
       { "kind": "profile", "body": "heap", "file": "p.csv", "time": 0.5, "mask": { "box": { "min": [0, 0, 0], "max": [1, 1, 1] } } } ],
     "optimizer": { "method": "lbfgs", "iterations": 30, "memory": 5, "tolerance": 1e-4 },

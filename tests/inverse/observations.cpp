@@ -141,6 +141,44 @@ TEST_CASE("gauges from CSV, of scalars and vectors, with times that two observat
   check_gradient(*observer, run);
 }
 
+TEST_CASE("averages over windows: of gauges where there is material, and of each particle for itself") {
+  const ObservedScene scene;
+  scene.folder.file("mean.csv", "time,value_x,value_y\n0,0.1,0.2\n0.02,0.3,0.4\n0.04,0.5,0.6\n");
+  scene.folder.file("far.csv", "time,value\n0,1\n0.02,2\n0.04,3\n");
+  scene.folder.file("p.csv", "time,id,x,y\n0,7,0.2,0.1\n0,9,0.1,0.2\n0.02,7,0.3,0.1\n0.02,9,0.2,0.1\n0.04,9,0.3,0.2\n");
+  const deck::Deck deck = scene.deck(
+      R"({"kind": "gauge", "gauge": "mean", "file": "mean.csv", "average": 0.04, "weight": 4},
+         {"kind": "gauge", "gauge": "far", "file": "far.csv", "average": 1},
+         {"kind": "particles", "body": "pool", "field": "position", "file": "p.csv", "average": 0.04})");
+  const Model model = build_model(deck);
+  const auto observer = make_observer(deck, model);
+  std::vector<std::vector<BodySnapshot>> run{moved(model, 1), moved(model, 2), moved(model, 3)};
+  run[1][0].position[0] = 0.85, run[1][0].position[1] = 0.35;  // material at the far gauge, once
+  show(*observer, run);
+  const auto read = [&](const char* gauge, std::size_t t, std::size_t k) {
+    return std::visit([&](const auto& kind) { return make_gauge(kind, model); }, deck.gauges.at(gauge))
+        ->measure({{}, run[t], {}, {}}, nullptr)
+        .values[k];
+  };
+  const auto x = [&](std::size_t t, std::size_t p, std::size_t k) { return run[t][0].position[2 * p + k]; };
+  const double root2 = std::sqrt(2.0);
+  const std::vector<double> expected{2 * (read("mean", 0, 0) + read("mean", 1, 0) - 0.1 - 0.3) / root2,
+                                     2 * (read("mean", 0, 1) + read("mean", 1, 1) - 0.2 - 0.4) / root2,
+                                     2 * (read("mean", 2, 0) - 0.5),
+                                     2 * (read("mean", 2, 1) - 0.6),
+                                     read("far", 1, 0) - 2,
+                                     (x(0, 7, 0) + x(1, 7, 0) - 0.2 - 0.3) / root2,
+                                     (x(0, 7, 1) + x(1, 7, 1) - 0.1 - 0.1) / root2,
+                                     (x(0, 9, 0) + x(1, 9, 0) - 0.1 - 0.2) / root2,
+                                     (x(0, 9, 1) + x(1, 9, 1) - 0.2 - 0.1) / root2,
+                                     x(2, 9, 0) - 0.3,
+                                     x(2, 9, 1) - 0.2};
+  REQUIRE(observer->residuals().size() == expected.size());
+  for (std::size_t k = 0; k < expected.size(); ++k) CHECK(observer->residuals()[k] == Approx(expected[k]).epsilon(1e-12));
+  for (auto& time : run) time[0].position[0] = 0.2, time[0].position[1] = 0.2;  // the pressure far off has no scale here
+  check_gradient(*observer, run);
+}
+
 TEST_CASE("a gauge from another run counts where both have material") {
   const ObservedScene scene;
   const deck::Deck deck = scene.deck(
