@@ -149,12 +149,17 @@ void build_blocks(Blocks<Dim>& blocks, const std::vector<std::int64_t>& tile_key
     std::int64_t rest = keys[b];
     for (std::size_t d = 0; d < Dim; ++d) blocks.index[b][d] = int(rest / stride[d]), rest %= stride[d];
   }
-  parallel_for_host("jaxmpm::blocks", around, [&](std::size_t m) {  // of neighbour m = (a·3 + b)·3 + c
-    std::int64_t offset = 0;
-    for (std::size_t d = Dim, rest = m; d-- > 0; rest /= 3) offset += (std::int64_t(rest % 3) - 1) * stride[d];
-    for (std::size_t b = 0, other = 0; b < n; ++b) {  // both ascend
-      while (other < n && keys[other] < keys[b] + offset) ++other;
-      if (other < n && keys[other] == keys[b] + offset) blocks.neighbour[b * around + m] = int(other);
+  constexpr std::size_t share = 1024;  // blocks side by side: threads that wrote by turns would fight over the memory's lines
+  parallel_for_host("jaxmpm::blocks", (n + share - 1) / share, [&](std::size_t part) {
+    const std::size_t first = part * share, last = std::min(first + share, n);
+    for (std::size_t m = 0; m < around; ++m) {  // of neighbour m = (a·3 + b)·3 + c
+      std::int64_t offset = 0;
+      for (std::size_t d = Dim, rest = m; d-- > 0; rest /= 3) offset += (std::int64_t(rest % 3) - 1) * stride[d];
+      auto other = std::lower_bound(keys.begin(), keys.end(), keys[first] + offset);
+      for (std::size_t b = first; b < last; ++b) {  // both ascend
+        while (other != keys.end() && *other < keys[b] + offset) ++other;
+        if (other != keys.end() && *other == keys[b] + offset) blocks.neighbour[b * around + m] = int(other - keys.begin());
+      }
     }
   });
 
