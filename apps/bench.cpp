@@ -13,11 +13,6 @@
 namespace jaxmpm {
 namespace {
 
-struct BenchOptions : DeckOptions {
-  std::uint64_t steps = 0, warm_up = 0;
-  bool json = false, gradient = false;
-};
-
 /// Takes steps as a run would, but never to an end; returns their lengths, s.
 std::vector<double> take(Solver& solver, const deck::Time& time, std::uint64_t steps) {
   std::vector<double> taken(steps);
@@ -79,7 +74,7 @@ PhaseSeconds operator-(const PhaseSeconds& a, const PhaseSeconds& b) {
   return {a.sort - b.sort, a.p2g - b.p2g, a.grid - b.grid, a.g2p - b.g2p};
 }
 
-nlohmann::ordered_json bench(const BenchOptions& options) {
+nlohmann::ordered_json measure(const BenchOptions& options) {
   const Runtime runtime(options.threads);
   const deck::Deck deck = deck::read_deck(options.deck, options.assignments);
   Model model = build_model(deck);
@@ -105,28 +100,12 @@ nlohmann::ordered_json bench(const BenchOptions& options) {
 
 }  // namespace
 
-void add_bench(CLI::App& app, Chosen& chosen) {
-  CLI::App* command = app.add_subcommand("bench", "Measure the cost of steps and of their gradient, without output");
-  auto options = std::make_shared<BenchOptions>();
-  add_deck_options(*command, *options);
-  add_backend_option(*command, *options);
-  command->add_option("--steps", options->steps, "Steps to measure")
-      ->required()
-      ->check(CLI::Range(std::uint64_t(1), std::uint64_t(1) << 40))
-      ->type_name("N");
-  options->warm_up = 5;
-  command->add_option("--warm-up", options->warm_up, "Steps before that, not counted")->capture_default_str()->type_name("N");
-  command->add_flag("--gradient", options->gradient, "Also measure the gradient of as many steps, from the start of the run");
-  command->add_flag("--json", options->json, "Print one JSON object");
-  command->callback([&chosen, options] {
-    chosen = [options](const CommonOptions&) {
-      const nlohmann::ordered_json result = bench(*options);
-      if (options->json) std::cout << result.dump() << '\n';
-      else
-        for (const auto& [key, value] : result.items()) std::cout << key << ": " << value.dump() << '\n';
-      return 0;
-    };
-  });
+int bench(const BenchOptions& options) {
+  const nlohmann::ordered_json result = measure(options);
+  if (options.json) std::cout << result.dump() << '\n';
+  else
+    for (const auto& [key, value] : result.items()) std::cout << key << ": " << value.dump() << '\n';
+  return 0;
 }
 
 }  // namespace jaxmpm

@@ -1,7 +1,8 @@
 // jaxmpm check: everything wrong with a deck or, when nothing is, what running it will take.
+#include <spdlog/fmt/fmt.h>
+
 #include <chrono>
 #include <iostream>
-#include <memory>
 
 #include "commands.hpp"
 #include "core/error.hpp"
@@ -51,6 +52,8 @@ bool print_step(const Model& model, const Solver& solver) {
   return dt <= limit;
 }
 
+}  // namespace
+
 int check(const DeckOptions& options) {
   const deck::Deck deck = deck::read_deck(options.deck, options.assignments);
   const Runtime runtime(options.threads);
@@ -75,16 +78,6 @@ int check(const DeckOptions& options) {
   if (good) return static_cast<int>(ExitCode::done);
   std::cout << "VERDICT: /time/step is above the limit, so the run would become unstable. Lower it, or use \"auto\".\n";
   return static_cast<int>(ExitCode::bad_verdict);
-}
-
-}  // namespace
-
-void add_check(CLI::App& app, Chosen& chosen) {
-  CLI::App* command = app.add_subcommand("check", "Check a deck: all errors, particles, memory, time step, estimated time");
-  auto options = std::make_shared<DeckOptions>();
-  add_deck_options(*command, *options);
-  add_backend_option(*command, *options);
-  command->callback([&chosen, options] { chosen = [options](const CommonOptions&) { return check(*options); }; });
 }
 
 }  // namespace jaxmpm

@@ -1,13 +1,10 @@
 #pragma once
-// The subcommands; each lives in the file of its name. They add themselves to the command line and return their exit code when chosen.
-#include <CLI/CLI.hpp>
-#include <functional>
-#include <map>
+// The subcommands; each lives in the file of its name and returns its exit code. What they take from the command line are plain structs.
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "core/logging.hpp"
 #include "deck/deck.hpp"
 #include "solvers/solver.hpp"
 
@@ -17,7 +14,6 @@ namespace jaxmpm {
 struct CommonOptions {
   bool quiet = false, verbose = false;
   std::string log;
-  Verbosity verbosity() const { return quiet ? Verbosity::quiet : verbose ? Verbosity::verbose : Verbosity::normal; }
 };
 
 /// A deck and how to run it.
@@ -34,25 +30,29 @@ struct ResultsOptions : DeckOptions {
   bool overwrite = false;
   double max_walltime = 0;  // min
 };
+
+struct BenchOptions : DeckOptions {
+  std::uint64_t steps = 0, warm_up = 5;
+  bool json = false, gradient = false;
+};
+
+struct GradientOptions : DeckOptions {
+  bool check = false, json = false;
+  std::size_t directions = 5;
+  std::uint64_t seed = 1;
+};
+
 /// The deck as the command line asks for it, with its results directory.
 deck::Deck read(const ResultsOptions& options);
-
-/// Work of the subcommand that was chosen on the command line; its result is the exit code.
-using Chosen = std::function<int(const CommonOptions&)>;
-
-void add_common_options(CLI::App& app, CommonOptions& options);
-void add_deck_options(CLI::App& app, DeckOptions& options);
-/// For commands that run on any backend; gradients are computed on the CPU.
-void add_backend_option(CLI::App& app, DeckOptions& options);
 /// The backend asked for, or the best one of this build.
 Backend chosen_backend(const DeckOptions& options);
 
-void add_run(CLI::App& app, Chosen& chosen);
-void add_check(CLI::App& app, Chosen& chosen);
-void add_bench(CLI::App& app, Chosen& chosen);
-void add_invert(CLI::App& app, Chosen& chosen);
-void add_gradient(CLI::App& app, Chosen& chosen);
-void add_schema(CLI::App& app, Chosen& chosen);
-void add_info(CLI::App& app, Chosen& chosen);
+int run(const ResultsOptions& options, bool quiet);
+int invert(const ResultsOptions& options);
+int check(const DeckOptions& options);
+int gradient(const GradientOptions& options);
+int bench(const BenchOptions& options);
+int schema(bool markdown);
+int info();
 
 }  // namespace jaxmpm

@@ -7,6 +7,7 @@
 
 #include "commands.hpp"
 #include "core/error.hpp"
+#include "core/logging.hpp"
 #include "core/runtime.hpp"
 #include "core/signals.hpp"
 #include "inverse/gradient_check.hpp"
@@ -16,12 +17,6 @@ namespace jaxmpm {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-struct GradientOptions : DeckOptions {
-  bool check = false, json = false;
-  std::size_t directions = 5;
-  std::uint64_t seed = 1;
-};
 
 Json gradient_json(const Evaluation& at, const Unknowns& unknowns) {
   Json json{{"loss", at.loss}, {"gradient", Json::object()}};
@@ -94,7 +89,7 @@ void print_check(const GradientCheck& check) {
                            check.particle_steps, 100 * share, check.verdict);
 }
 
-int gradient(const GradientOptions& options) {
+int evaluate(const GradientOptions& options) {
   const deck::Deck deck = deck::read_deck(options.deck, options.assignments);
   const Unknowns unknowns(deck);
   RunObjective objective(deck, unknowns.pointers(), [] { return stop_signal() != 0; });
@@ -116,30 +111,15 @@ int gradient(const GradientOptions& options) {
 
 }  // namespace
 
-void add_gradient(CLI::App& app, Chosen& chosen) {
-  CLI::App* command = app.add_subcommand("gradient", "Loss and gradient of a deck at the start of its unknowns");
-  auto options = std::make_shared<GradientOptions>();
-  add_deck_options(*command, *options);
-  CLI::Option* check = command->add_flag("--check", options->check, "Compare the gradient with forward runs, and give a verdict");
-  command->add_option("--directions", options->directions, "Random directions of the check")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str()
-      ->needs(check)
-      ->type_name("N");
-  command->add_option("--seed", options->seed, "Of the random directions")->capture_default_str()->needs(check)->type_name("N");
-  command->add_flag("--json", options->json, "Print one JSON object");
-  command->callback([&chosen, options] {
-    chosen = [options](const CommonOptions&) {
-      watch_signals();
-      const Runtime runtime(options->threads);
-      try {
-        return gradient(*options);
-      } catch (const Stopped&) {
-        spdlog::info("Stopped; nothing is kept.");
-        return static_cast<int>(ExitCode::stopped);
-      }
-    };
-  });
+int gradient(const GradientOptions& options) {
+  watch_signals();
+  const Runtime runtime(options.threads);
+  try {
+    return evaluate(options);
+  } catch (const Stopped&) {
+    spdlog::info("Stopped; nothing is kept.");
+    return static_cast<int>(ExitCode::stopped);
+  }
 }
 
 }  // namespace jaxmpm

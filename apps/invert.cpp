@@ -1,9 +1,10 @@
 // jaxmpm invert: finds the unknowns of a deck from its observations.
 #include <chrono>
-#include <memory>
+#include <functional>
 
 #include "commands.hpp"
 #include "core/error.hpp"
+#include "core/logging.hpp"
 #include "core/runtime.hpp"
 #include "core/signals.hpp"
 #include "inverse/inversion.hpp"
@@ -27,7 +28,11 @@ void refuse_to_overwrite(const ResultsOptions& options, const InversionDirectory
                 "' holds an inversion. Continue it with --resume auto, replace it with --overwrite, or choose another directory with -o.");
 }
 
+}  // namespace
+
 int invert(const ResultsOptions& options) {
+  watch_signals();
+  const Runtime runtime(options.threads);
   const deck::Deck deck = read(options);
   const InversionDirectory directory(deck.output.directory);
   refuse_to_overwrite(options, directory);
@@ -44,30 +49,6 @@ int invert(const ResultsOptions& options) {
   if (inversion.run()) return static_cast<int>(ExitCode::done);
   spdlog::info("Stopped. Continue with: jaxmpm invert {} --resume auto (and the same -o and --set)", options.deck);
   return static_cast<int>(ExitCode::stopped);
-}
-
-}  // namespace
-
-void add_invert(CLI::App& app, Chosen& chosen) {
-  CLI::App* command = app.add_subcommand("invert", "Find the unknowns of a deck from its observations");
-  auto options = std::make_shared<ResultsOptions>();
-  add_deck_options(*command, *options);
-  command->add_option("-o,--output", options->directory, "Results directory, instead of the deck's")->type_name("DIR");
-  CLI::Option* overwrite = command->add_flag("--overwrite", options->overwrite, "Replace an inversion that is there");
-  command->add_option("--resume", options->resume, "Continue the inversion of the directory, or start at the beginning")
-      ->check(CLI::IsMember({"auto"}))
-      ->type_name("auto")
-      ->excludes(overwrite);
-  command->add_option("--max-walltime", options->max_walltime, "Stop after this many minutes, to be continued")
-      ->check(CLI::PositiveNumber)
-      ->type_name("MIN");
-  command->callback([&chosen, options] {
-    chosen = [options](const CommonOptions&) {
-      watch_signals();
-      const Runtime runtime(options->threads);
-      return invert(*options);
-    };
-  });
 }
 
 }  // namespace jaxmpm

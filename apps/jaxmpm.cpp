@@ -3,18 +3,22 @@
 #include <cstdio>
 #include <iostream>
 
-#include "commands.hpp"
+#include "command_line.hpp"
 #include "core/error.hpp"
-#include "core/provenance.hpp"
+#include "core/logging.hpp"
 
 namespace {
 
 using namespace jaxmpm;
 
-int guarded(const Chosen& chosen, const CommonOptions& options) {
+Verbosity verbosity(const CommonOptions& options) {
+  return options.quiet ? Verbosity::quiet : options.verbose ? Verbosity::verbose : Verbosity::normal;
+}
+
+int guarded(const CommandLine& line) {
   try {
-    start_logging(options.verbosity(), options.log);
-    const int code = chosen(options);
+    start_logging(verbosity(line.common), line.common.log);
+    const int code = line.command();
     std::cout.flush();
     if (!std::cout) throw IoError("cannot write to standard output (a full disk or a closed pipe).");
     return code;
@@ -35,18 +39,7 @@ int guarded(const Chosen& chosen, const CommonOptions& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Material point method: forward simulation and calibration from one deck.", "jaxmpm");
-  app.set_version_flag("--version", provenance().version);
-  app.require_subcommand(1);
-  app.fallthrough();
-  CommonOptions options;
-  Chosen chosen;
-  add_common_options(app, options);
-  for (const auto add : {add_run, add_invert, add_check, add_gradient, add_bench, add_schema, add_info}) add(app, chosen);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::deck);
-  }
-  return guarded(chosen, options);
+  CommandLine line;
+  const int code = read_command_line(argc, argv, line);
+  return line.command ? guarded(line) : code;
 }

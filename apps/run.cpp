@@ -6,6 +6,7 @@
 
 #include "commands.hpp"
 #include "core/error.hpp"
+#include "core/logging.hpp"
 #include "core/provenance.hpp"
 #include "core/runtime.hpp"
 #include "core/signals.hpp"
@@ -158,28 +159,10 @@ class Run {
 
 }  // namespace
 
-void add_run(CLI::App& app, Chosen& chosen) {
-  CLI::App* command = app.add_subcommand("run", "Run a deck and write its results");
-  auto options = std::make_shared<ResultsOptions>();
-  add_deck_options(*command, *options);
-  add_backend_option(*command, *options);
-  command->add_option("-o,--output", options->directory, "Results directory, instead of the deck's")->type_name("DIR");
-  CLI::Option* overwrite = command->add_flag("--overwrite", options->overwrite, "Replace results that are there");
-  command
-      ->add_option("--resume", options->resume,
-                   "Continue: auto (newest checkpoint of the directory, or from the beginning) or a checkpoint file")
-      ->type_name("auto|FILE")
-      ->excludes(overwrite);
-  command->add_option("--max-walltime", options->max_walltime, "Stop with a checkpoint after this many minutes")
-      ->check(CLI::PositiveNumber)
-      ->type_name("MIN");
-  command->callback([&chosen, options] {
-    chosen = [options](const CommonOptions& common) {
-      watch_signals();
-      const Runtime runtime(options->threads);
-      return Run(*options, common.quiet)();
-    };
-  });
+int run(const ResultsOptions& options, bool quiet) {
+  watch_signals();
+  const Runtime runtime(options.threads);
+  return Run(options, quiet)();
 }
 
 }  // namespace jaxmpm
