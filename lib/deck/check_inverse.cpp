@@ -3,8 +3,7 @@
 #include <regex>
 
 #include "deck/check.hpp"
-#include "deck/descriptions.hpp"
-#include "deck/inverse.hpp"
+#include "deck/describe_inverse.hpp"
 
 namespace jaxmpm::deck {
 

@@ -1,5 +1,5 @@
 // Values of /inverse that take several forms.
-#include "deck/inverse.hpp"
+#include "deck/describe_inverse.hpp"
 
 namespace jaxmpm::described {
 

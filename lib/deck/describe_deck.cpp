@@ -1,6 +1,5 @@
 // The deck as a whole.
-#include "deck/descriptions.hpp"
-#include "deck/inverse.hpp"
+#include "deck/describe_inverse.hpp"
 
 namespace jaxmpm::deck {
 namespace {

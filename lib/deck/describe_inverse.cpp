@@ -1,7 +1,7 @@
 // Unknowns, observations, optimisers.
 #include <regex>
 
-#include "deck/inverse.hpp"
+#include "deck/describe_inverse.hpp"
 
 namespace jaxmpm::deck {
 

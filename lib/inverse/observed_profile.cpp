@@ -61,7 +61,7 @@ ObservedProfile profile_of_table(const deck::ProfileObservation& observed, const
 
 /// Volume of one place of a body's seed lattice, m³ (m² in 2D), from the deck of its run.
 double lattice_volume(const ResultsReader& results, const std::string& body, int dim) {
-  const nlohmann::json deck = nlohmann::json::parse(results.deck());
+  const auto deck = nlohmann::ordered_json::parse(results.deck());
   for (const auto& one : deck.at("bodies")) {
     if (one.at("name") != body) continue;
     if (one.contains("spacing") && one.at("spacing").is_number()) return std::pow(one.at("spacing").get<double>(), dim);

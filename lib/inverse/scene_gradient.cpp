@@ -15,7 +15,7 @@ using Parts = std::vector<std::string>;
 /// The keys and indices of a JSON pointer.
 Parts parts_of(const std::string& pointer) {
   Parts parts;
-  for (nlohmann::json::json_pointer rest(pointer); !rest.empty(); rest.pop_back()) parts.push_back(rest.back());
+  for (nlohmann::ordered_json::json_pointer rest(pointer); !rest.empty(); rest.pop_back()) parts.push_back(rest.back());
   std::reverse(parts.begin(), parts.end());
   return parts;
 }

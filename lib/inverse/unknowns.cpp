@@ -4,13 +4,14 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "deck/describe_inverse.hpp"
 #include "fields/mlp.hpp"
 
 namespace jaxmpm {
 namespace {
 
 using deck::Transform;
-using nlohmann::json;
+using Json = nlohmann::ordered_json;
 constexpr double unbounded = std::numeric_limits<double>::infinity();
 
 /// The network at /bodies/B/velocity/C/mlp.
@@ -21,12 +22,12 @@ const deck::Mlp& network_at(const deck::Deck& deck, const std::string& pointer) 
 }
 
 /// Numbers at which the search starts, at the pointer `index` of the unknown's.
-Variables start_of(const deck::Deck& deck, const json& resolved, const deck::Unknown& unknown, const std::string& pointer,
+Variables start_of(const deck::Deck& deck, const Json& resolved, const deck::Unknown& unknown, const std::string& pointer,
                    std::size_t index) {
   if (deck::is_network(pointer)) return Mlp(network_at(deck, pointer), deck.dimension(), pointer).weights();
   if (const auto* number = std::get_if<double>(&unknown.start)) return {*number};
   if (const auto* list = std::get_if<deck::Numbers>(&unknown.start)) return {list->at(index)};
-  return {resolved.at(json::json_pointer(pointer)).get<double>()};
+  return {resolved.at(Json::json_pointer(pointer)).get<double>()};
 }
 
 double variable(Transform transform, double lower, double upper, double x) {
@@ -39,13 +40,13 @@ double variable(Transform transform, double lower, double upper, double x) {
 
 Unknowns::Unknowns(const deck::Deck& deck) {
   const deck::Inverse inverse = deck::inverse_of(deck);
-  const json resolved = json::parse(deck.resolved);
+  const Json resolved = Json::parse(deck.resolved);
   for (std::size_t k = 0; k < inverse.unknowns.size(); ++k) {
     const deck::Unknown& unknown = inverse.unknowns[k];
     const auto bounds = unknown.bounds.value_or(deck::Numbers{-unbounded, unbounded});
     laws_.push_back({unknown.transform, bounds[0], bounds[1], unknown.prior});
     paths_.push_back(unknown.path);
-    const std::vector<std::string> pointers = deck::pointers_of(unknown.path, described::Json::parse(deck.resolved));
+    const std::vector<std::string> pointers = deck::pointers_of(unknown.path, resolved);
     if (unknown.share) {
       add_block(k, pointers, start_of(deck, resolved, unknown, pointers.front(), 0));
       continue;
@@ -136,13 +137,13 @@ void Unknowns::add_prior_gradient(const Variables& u, Variables& gradient) const
 std::vector<std::string> assignments(const Values& values) {
   std::vector<std::string> list;
   for (const auto& [pointer, numbers] : values)
-    list.push_back(deck::is_network(pointer) ? pointer + "/weights=" + json(numbers).dump() : pointer + "=" + json(numbers.at(0)).dump());
+    list.push_back(deck::is_network(pointer) ? pointer + "/weights=" + Json(numbers).dump() : pointer + "=" + Json(numbers.at(0)).dump());
   return list;
 }
 
 deck::Deck with_values(const deck::Deck& deck, const Values& values) {
   deck::Deck plain = deck;
-  auto text = nlohmann::ordered_json::parse(deck.resolved);
+  Json text = Json::parse(deck.resolved);
   text.erase("inverse");
   plain.resolved = text.dump();
   return deck::with_assignments(plain, assignments(values));
