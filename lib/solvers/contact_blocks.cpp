@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/parallel.hpp"
+#include "core/parallel_host.hpp"
 #include "kernels/wall_node.hpp"
 
 namespace jaxmpm {

@@ -3,7 +3,7 @@
 #include <chrono>
 
 #include "core/error.hpp"
-#include "core/parallel.hpp"
+#include "core/parallel_host.hpp"
 
 namespace jaxmpm {
 namespace {

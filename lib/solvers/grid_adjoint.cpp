@@ -1,6 +1,6 @@
 #include "solvers/grid_adjoint.hpp"
 
-#include "core/parallel.hpp"
+#include "core/parallel_host.hpp"
 
 namespace jaxmpm {
 

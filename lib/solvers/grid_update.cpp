@@ -2,7 +2,7 @@
 
 #include <cstring>
 
-#include "core/parallel.hpp"
+#include "core/parallel_host.hpp"
 
 namespace jaxmpm {
 namespace {

@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "core/error.hpp"
-#include "core/parallel.hpp"
+#include "core/parallel_host.hpp"
 
 namespace jaxmpm {
 namespace {

@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "basis/bspline.hpp"
-#include "core/parallel.hpp"
+#include "core/parallel_host.hpp"
 #include "state/blocks.hpp"
 #include "state/particles.hpp"
 

@@ -1,0 +1,33 @@
+#pragma once
+// Labelled parallel loops on the host's threads, behind two plain functions: the sources that run them need not compile Kokkos's headers.
+#include <cstddef>
+#include <string>
+
+namespace jaxmpm {
+
+/// Part of a loop: iterations from `begin` until before `end`, of the loop body that `body` points to.
+using LoopPart = void (*)(const void* body, std::size_t begin, std::size_t end);
+
+/// Iterations 0 … n−1, handed to threads a few at a time as they become free (dynamic), or in equal shares (static).
+void run_dynamic(const std::string& label, std::size_t n, LoopPart part, const void* body);
+void run_static(const std::string& label, std::size_t n, LoopPart part, const void* body);
+
+template <class F>
+void run_part(const void* body, std::size_t begin, std::size_t end) {
+  const F& f = *static_cast<const F*>(body);
+  for (std::size_t i = begin; i < end; ++i) f(i);
+}
+
+/// Runs f(i) for i = 0 … n−1; iterations differ in cost, so they are handed out as threads become free.
+template <class F>
+void parallel_for_host(const std::string& label, std::size_t n, const F& f) {
+  run_dynamic(label, n, &run_part<F>, &f);
+}
+
+/// The same with equal shares for each thread, for loops over particles.
+template <class F>
+void parallel_for_host_static(const std::string& label, std::size_t n, const F& f) {
+  run_static(label, n, &run_part<F>, &f);
+}
+
+}  // namespace jaxmpm
