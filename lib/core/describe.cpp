@@ -231,25 +231,4 @@ Json only_key_schema(const std::string& name, Json value, const std::string& tex
   return schema;
 }
 
-Json key_schema(Json type, const std::string& help, const Limits& limits, const Json& default_value, const std::string& default_text,
-                const std::string& condition) {
-  if (!help.empty()) type["description"] = help;
-  if (!limits.unit.empty()) type["x-unit"] = limits.unit;
-  if (limits.length == Limits::Length::dimension) type["x-length"] = "one per axis";
-  if (limits.length == Limits::Length::plan) type["x-length"] = "one per horizontal axis";
-  if (!default_value.is_discarded()) type["default"] = default_value;
-  if (!default_text.empty()) type["x-default"] = default_text;
-  if (!condition.empty()) type["x-only-with"] = condition;
-  return type;
-}
-
-Json object_schema(const std::string& title, const std::string& text, int dimension, Json properties, Json required) {
-  Json schema{{"type", "object"}, {"title", title}, {"description", text}};
-  if (dimension != 0) schema["x-dimension"] = dimension;
-  schema["properties"] = std::move(properties);
-  if (!required.empty()) schema["required"] = std::move(required);
-  schema["additionalProperties"] = false;
-  return schema;
-}
-
 }  // namespace jaxmpm::described

@@ -8,6 +8,7 @@
 //     d.required("density", &Newtonian::density).unit("kg/m³").above(0).help("Density at rest.");
 //     d.optional("viscosity", &Newtonian::viscosity).unit("Pa s").from(0);
 //   }
+#include <cstddef>
 #include <deque>
 #include <functional>
 #include <map>
@@ -52,93 +53,152 @@ struct Codec;
 template <class E>
 using EnumNames = std::vector<std::pair<E, std::string>>;
 
-/// One key of a struct T; the calls can be chained.
-template <class T>
-struct Key {
+/// How the values of one C++ type are read, written and described by one codec; the pointers are to such values.
+struct ValueCodec {
+  void (*read)(void* out, const Place& place, const Limits& limits);
+  Json (*write)(const void* in, const Limits& limits);  // discarded: nothing to write
+  Json (*schema)(const Limits& limits, Schema& defs);
+};
+template <class C, class M>
+inline constexpr ValueCodec codec_of{
+    [](void* out, const Place& place, const Limits& limits) { C::read(*static_cast<M*>(out), place, limits); },
+    [](const void* in, const Limits& limits) { return C::write(*static_cast<const M*>(in), limits); }, &C::schema};
+
+/// What is known of one key of a struct.
+struct KeyFacts {
   std::string name, text, condition, default_text;
   bool required = false, empty_is_absent = false;
   Limits limits;
-  std::function<void(T&, const Place&, const Limits&)> read;
-  std::function<Json(const T&, const Limits&)> write;  // discarded: nothing to write
-  std::function<Json(const Limits&, Schema&)> schema;
-  std::function<bool(const T&)> matters;
+  const ValueCodec* codec = nullptr;  // none: a key of the file, which must have the value `fixed` (null: any string)
+  std::ptrdiff_t offset = 0;          // of the member in its struct, bytes
+  Json fixed;
+  std::function<bool(const void* in)> matters;
   std::vector<std::string> matters_by;  // keys that `matters` looks at
-  std::function<void(T&, const Reader&)> fill;
+  std::function<void(void* out, const Reader&)> fill;
+};
+
+/// Says more about a key of a struct T; the calls can be chained.
+template <class T>
+class Key {
+ public:
+  explicit Key(KeyFacts& facts) : facts_(facts) {}
 
   Key& help(std::string prose) {
-    text = std::move(prose);
+    facts_.text = std::move(prose);
     return *this;
   }
   Key& unit(std::string name_of_unit) {
-    limits.unit = std::move(name_of_unit);
+    facts_.limits.unit = std::move(name_of_unit);
     return *this;
   }
   Key& above(double bound) {
-    limits.above = bound;
+    facts_.limits.above = bound;
     return *this;
   }
   Key& from(double bound) {
-    limits.from = bound;
+    facts_.limits.from = bound;
     return *this;
   }
   Key& below(double bound) {
-    limits.below = bound;
+    facts_.limits.below = bound;
     return *this;
   }
   Key& to(double bound) {
-    limits.to = bound;
+    facts_.limits.to = bound;
     return *this;
   }
   Key& choices(std::vector<std::string> words) {
-    limits.choices = std::move(words);
+    facts_.limits.choices = std::move(words);
     return *this;
   }
   Key& word(std::string name_of_empty) {
-    limits.word = std::move(name_of_empty);
+    facts_.limits.word = std::move(name_of_empty);
     return *this;
   }
   /// A list with one number per axis of the domain.
   Key& vector() {
-    limits.length = Limits::Length::dimension;
+    facts_.limits.length = Limits::Length::dimension;
     return *this;
   }
   /// A list with one number per axis except the vertical one.
   Key& plan_vector() {
-    limits.length = Limits::Length::plan;
+    facts_.limits.length = Limits::Length::plan;
     return *this;
   }
   Key& items(std::size_t fewest, std::size_t most = SIZE_MAX) {
-    limits.fewest = fewest;
-    limits.most = most;
+    facts_.limits.fewest = fewest;
+    facts_.limits.most = most;
     return *this;
   }
   Key& distinct() {
-    limits.distinct = true;
+    facts_.limits.distinct = true;
     return *this;
   }
-  /// The key has an effect only where the condition, which looks at the keys `by`, holds; elsewhere it is refused, and not written.
-  Key& when(std::vector<std::string> by, std::function<bool(const T&)> holds, std::string words) {
-    matters_by = std::move(by);
-    matters = std::move(holds);
-    condition = std::move(words);
+  /// The key has an effect only where the condition, holds(const T&), which looks at the keys `by`, holds; elsewhere it is refused, and not
+  /// written.
+  template <class F>
+  Key& when(std::vector<std::string> by, F holds, std::string words) {
+    facts_.matters_by = std::move(by);
+    facts_.matters = [holds](const void* in) { return holds(*static_cast<const T*>(in)); };
+    facts_.condition = std::move(words);
     return *this;
   }
   /// An empty string or list stands for a key that was not given, and is not written.
   Key& absent_when_empty() {
-    empty_is_absent = true;
+    facts_.empty_is_absent = true;
     return *this;
   }
-  /// A default that depends on other keys or on the dimension; `words` says it in the reference. Without a function somebody above fills it
-  /// in.
-  Key& otherwise(std::string words, std::function<void(T&, const Reader&)> filler = {}) {
-    default_text = std::move(words);
-    fill = std::move(filler);
+  /// A default that depends on other keys or on the dimension; `words` says it in the reference. Somebody above fills it in.
+  Key& otherwise(std::string words) {
+    facts_.default_text = std::move(words);
     return *this;
   }
+  /// The same; filler(T&, const Reader&) fills it in.
+  template <class F>
+  Key& otherwise(std::string words, F filler) {
+    facts_.fill = [filler](void* out, const Reader& reader) { filler(*static_cast<T*>(out), reader); };
+    return otherwise(std::move(words));
+  }
+
+ private:
+  KeyFacts& facts_;
+};
+
+/// Keys and rules of a struct, whose C++ type only Description<T> knows: all that reads, writes and describes is compiled once for all.
+class StructDescription {
+ public:
+  /// Name of the struct in JSON, what it is, and the family (material, shape, …) whose members its name tells apart.
+  void is(std::string name, std::string prose, const std::string& family = {});
+  /// The struct exists only in this dimension.
+  void only_in(int dimension) { dimension_ = dimension; }
+  /// A key that belongs to the file, not to the struct: it must have this value (or, where `value` is null, may be any string).
+  void fixed(const std::string& name, Json value, bool needed, const std::string& prose);
+
+  const std::string& name() const { return name_; }
+  const std::string& text() const { return text_; }
+  const std::string& definition() const { return definition_; }
+
+ protected:
+  using Rule = std::function<void(const void* in, const Place&)>;
+  KeyFacts& add(const std::string& name, const ValueCodec& codec, std::ptrdiff_t offset, bool required);
+  void add_rule(std::vector<std::string> by, Rule rule) { rules_.push_back({std::move(by), std::move(rule)}); }
+  void read_struct(void* out, const Place& place, const std::string& tag) const;
+  Json write_struct(const void* in, const std::string& tag) const;
+  Json struct_schema(const void* fresh, Schema& defs, const std::string& tag) const;
+
+ private:
+  void read_keys(void* out, const Place& place) const;
+  void check_together(const void* out, const Place& place) const;
+  std::vector<std::string> names(const std::string& tag) const;
+
+  std::string name_, definition_, text_;
+  int dimension_ = 0;
+  std::deque<KeyFacts> keys_;
+  std::vector<std::pair<std::vector<std::string>, Rule>> rules_;
 };
 
 template <class T>
-class Description {
+class Description : public StructDescription {
  public:
   Description() { describe(*this); }
   static const Description& get() {
@@ -146,53 +206,37 @@ class Description {
     return description;
   }
 
-  /// Name of the struct in JSON, what it is, and the family (material, shape, …) whose members its name tells apart.
-  void is(std::string name, std::string prose, const std::string& family = {}) {
-    definition_ = family.empty() ? name : family + "." + name;
-    name_ = std::move(name);
-    text_ = std::move(prose);
+  template <class M>
+  Key<T> required(const std::string& name, M T::*member) {
+    return Key<T>(add(name, codec_of<Codec<M>, M>, offset_of(member), true));
   }
   template <class M>
-  Key<T>& required(const std::string& name, M T::*member) {
-    return add<Codec<M>>(name, member, true);
-  }
-  template <class M>
-  Key<T>& optional(const std::string& name, M T::*member) {
-    return add<Codec<M>>(name, member, false);
+  Key<T> optional(const std::string& name, M T::*member) {
+    return optional_as<Codec<M>>(name, member);
   }
   /// As optional(), with a codec other than that of the member's type.
   template <class C, class M>
-  Key<T>& optional_as(const std::string& name, M T::*member) {
-    return add<C>(name, member, false);
+  Key<T> optional_as(const std::string& name, M T::*member) {
+    return Key<T>(add(name, codec_of<C, M>, offset_of(member), false));
   }
-  /// A key that belongs to the file, not to the struct: it must have this value (or, where `value` is null, may be any string).
-  void fixed(const std::string& name, Json value, bool needed, const std::string& prose);
-  /// A check of several keys together, made when none of the keys `by` has a problem of its own.
-  void check(std::vector<std::string> by, std::function<void(const T&, const Place&)> rule) {
-    rules_.push_back({std::move(by), std::move(rule)});
+  /// A check of several keys together, rule(const T&, const Place&), made when none of the keys `by` has a problem of its own.
+  template <class F>
+  void check(std::vector<std::string> by, F rule) {
+    add_rule(std::move(by), [rule](const void* in, const Place& place) { rule(*static_cast<const T*>(in), place); });
   }
-  /// The struct exists only in this dimension.
-  void only_in(int dimension) { dimension_ = dimension; }
 
-  const std::string& name() const { return name_; }
-  const std::string& text() const { return text_; }
-  const std::string& definition() const { return definition_; }
   /// `tag`: a key that was read already and tells which struct this is.
-  void read(T& out, const Place& place, const std::string& tag = {}) const;
-  Json write(const T& in, const std::string& tag = {}) const;
-  Json schema(Schema& defs, const std::string& tag = {}) const;
+  void read(T& out, const Place& place, const std::string& tag = {}) const { read_struct(&out, place, tag); }
+  Json write(const T& in, const std::string& tag = {}) const { return write_struct(&in, tag); }
+  Json schema(Schema& defs, const std::string& tag = {}) const { return struct_schema(&fresh_, defs, tag); }
 
  private:
-  template <class C, class M>
-  Key<T>& add(const std::string& name, M T::*member, bool required);
-  void read_keys(T& out, const Place& place) const;
-  void check_together(const T& out, const Place& place) const;
-  std::vector<std::string> names(const std::string& tag) const;
+  template <class M>
+  std::ptrdiff_t offset_of(M T::*member) const {
+    return reinterpret_cast<const char*>(&(fresh_.*member)) - reinterpret_cast<const char*>(&fresh_);
+  }
 
-  std::string name_, definition_, text_;
-  int dimension_ = 0;
-  std::deque<Key<T>> keys_;
-  std::vector<std::pair<std::vector<std::string>, std::function<void(const T&, const Place&)>>> rules_;
+  const T fresh_{};  // holds the defaults
 };
 
 // ---- simple types ----
@@ -252,6 +296,11 @@ struct Codec<T, std::enable_if_t<std::is_enum_v<T>>> {
 };
 
 // ---- containers ----
+
+/// Whether the value is an object; reports if not.
+bool check_object(const Place& place);
+/// Reports keys that are not among `names`, with the nearest of them.
+void check_keys(const Place& place, const std::vector<std::string>& names);
 
 /// Whether the value is a list of permitted length with distinct items; reports if not.
 bool check_list(const Place& place, const Limits& limits);
@@ -338,4 +387,4 @@ struct Codec {
 
 }  // namespace jaxmpm::described
 
-#include "core/describe_struct.hpp"
+#include "core/describe_choice.hpp"
