@@ -1,9 +1,10 @@
 """jaxmpm check, bench, schema, info."""
 import json
 import pathlib
+import re
 import unittest
 
-from harness import BAD_VERDICT, DECK, DONE, INPUTS, ProgramTest, small_deck
+from harness import BAD_VERDICT, DECK, DONE, INPUTS, ROOT, ProgramTest, small_deck
 
 
 class Commands(ProgramTest):
@@ -12,6 +13,13 @@ class Commands(ProgramTest):
         for command in ("run", "check", "bench", "schema", "info"):
             self.assertIn(command, said)
         self.assertIn("--max-walltime", self.expect(DONE, "run", "--help"))
+
+    def test_help_names_documents_that_exist(self):
+        for command in ("run", "invert", "check", "gradient", "bench"):
+            named = re.findall(r"docs/[\w.-]+", self.expect(DONE, command, "--help"))
+            self.assertTrue(named, command)
+            for document in named:
+                self.assertTrue((ROOT / document).is_file(), document)
 
     def test_check(self):
         said = self.expect(DONE, "check", self.write(small_deck()))
