@@ -2,7 +2,8 @@
 // Function marks: the same source compiles for the host and, in the .cu files of a CUDA build (JAXMPM_DEVICE_CODE), for the device. The
 // other files stay host code, as packs of lanes cannot be on the device. JAXMPM_INLINE insists on inlining, JAXMPM_FUNCTION leaves it to
 // the compiler.
-// JAXMPM_UNROLL unrolls the loop that follows on the device, where an array whose indices are not known at compile time leaves the registers.
+// JAXMPM_UNROLL unrolls the loop that follows on the device, where an array whose indices are not known at compile time leaves the
+// registers.
 #if defined(JAXMPM_DEVICE_CODE)
 #define JAXMPM_INLINE __host__ __device__ __forceinline__
 #define JAXMPM_FUNCTION __host__ __device__ inline
