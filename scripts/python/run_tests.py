@@ -15,6 +15,8 @@ import time
 import unittest
 import xml.etree.ElementTree
 
+from coarse_decks import INPUTS, coarse_decks
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SUITES = ("unit", "program", "decks", "validate")
 # Two tests at a time, each with threads that wait by spinning, would be slower by far than with one thread each.
@@ -85,23 +87,14 @@ def program(build, tally, _options):
     tally.passed += result.testsRun - len(bad) - len(result.skipped)
 
 
-def coarse_forms():
-    """Deck name → assignments of its coarse form."""
-    lines = (ROOT / "inputs" / "coarse.txt").read_text(encoding="utf-8").splitlines()
-    words = [line.split() for line in lines if line.strip() and not line.startswith("#")]
-    return {deck: assignments for deck, *assignments in words}
-
-
 def decks(build, tally, _options):
-    forms = coarse_forms()
+    forms = coarse_decks()
     with tempfile.TemporaryDirectory() as out:
-        for name in sorted(path.name for path in (ROOT / "inputs").glob("*.json")):
+        for name in sorted(path.name for path in INPUTS.glob("*.json")):
             if name not in forms:
                 tally.add(f"inputs/{name} has no line in inputs/coarse.txt", False)
                 continue
-            command = [build / "jaxmpm", "run", ROOT / "inputs" / name, "-q", "-o", pathlib.Path(out) / name]
-            for assignment in forms[name]:
-                command += ["--set", assignment]
+            command = [build / "jaxmpm", "run", INPUTS / name, "-q", "-o", pathlib.Path(out) / name, *forms[name]]
             tally.add(f"inputs/{name}", run_quietly(command, f"inputs/{name}", env=ONE_THREAD))
 
 

@@ -5,6 +5,7 @@ import pathlib
 import shutil
 import signal
 import subprocess
+import sys
 import tempfile
 import unittest
 
@@ -12,8 +13,11 @@ import h5py
 import numpy as np
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "scripts" / "python"))
+
+from coarse_decks import INPUTS, coarse_decks  # noqa: E402, F401
+
 PROGRAM = os.environ.get("JAXMPM", str(ROOT / "build" / "jaxmpm"))
-INPUTS = ROOT / "inputs"
 
 DONE, BAD_VERDICT, DECK, NUMERICS, IO, STOPPED = 0, 1, 2, 3, 4, 75
 

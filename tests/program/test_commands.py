@@ -4,7 +4,7 @@ import pathlib
 import re
 import unittest
 
-from harness import BAD_VERDICT, DECK, DONE, INPUTS, ROOT, ProgramTest, small_deck
+from harness import BAD_VERDICT, DECK, DONE, INPUTS, ROOT, ProgramTest, coarse_decks, small_deck
 
 
 class Commands(ProgramTest):
@@ -59,13 +59,10 @@ class Commands(ProgramTest):
         self.assertIn("frame 1", self.expect(DONE, "run", deck, "-o", "b", "-v", "--threads", "1"))
 
     def test_every_deck_of_inputs_passes_the_check_in_its_coarse_form(self):
-        for line in (INPUTS / "coarse.txt").read_text().splitlines():
-            if not line.strip() or line.startswith("#"):
-                continue
-            name, *assignments = line.split()
+        for name, coarse in coarse_decks().items():
             with self.subTest(deck=name):
                 self.assertTrue(pathlib.Path(INPUTS / name).exists())
-                self.expect(DONE, "check", INPUTS / name, "--threads", "1", *[part for a in assignments for part in ("--set", a)])
+                self.expect(DONE, "check", INPUTS / name, "--threads", "1", *coarse)
 
 
 if __name__ == "__main__":

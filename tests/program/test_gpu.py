@@ -13,7 +13,7 @@ import unittest
 import h5py
 import numpy as np
 
-from harness import DECK, DONE, INPUTS, PROGRAM, ProgramTest, small_deck
+from harness import DECK, DONE, INPUTS, PROGRAM, ProgramTest, coarse_decks, small_deck
 
 # Largest difference at the end of a coarse run, over the largest value of the field. Measured: 5e-13 and 2e-5 at most.
 ROUND_OFF = {"f64": 1e-10, "f32": 1e-3}
@@ -29,13 +29,6 @@ def gpu_found():
         deck = INPUTS / "dam_break_2d.json"
         done = subprocess.run([PROGRAM, "bench", deck, "--steps", "1", "--backend", "cuda", "--set", "/domain/cell_size=0.02"], cwd=scratch, capture_output=True, check=False)
         return done.returncode == DONE
-
-
-def coarse_decks():
-    for line in (INPUTS / "coarse.txt").read_text().splitlines():
-        if line.strip() and not line.startswith("#"):
-            name, *settings = line.split()
-            yield name, settings
 
 
 def last_frame(directory):
@@ -69,16 +62,15 @@ class Gpu(ProgramTest):
         if not gpu_found():
             self.skipTest("no CUDA backend, or no GPU")
 
-    def run_on(self, backend, deck, out, settings, *more):
-        sets = [part for setting in settings for part in ("--set", setting)]
-        self.expect(DONE, "run", deck, "-o", out, "--backend", backend, "--threads", "2", *sets, *more)
+    def run_on(self, backend, deck, out, *more):
+        self.expect(DONE, "run", deck, "-o", out, "--backend", backend, "--threads", "2", *more)
         return last_frame(self.scratch / out)
 
     def test_every_deck_gives_the_results_of_the_cpu(self):
-        for name, settings in coarse_decks():
+        for name, coarse in coarse_decks().items():
             with self.subTest(deck=name):
                 stem = pathlib.Path(name).stem
-                cpu, gpu = (self.run_on(backend, INPUTS / name, f"{backend}_{stem}", [*settings, '/output/formats=["hdf5"]']) for backend in ("cpu", "cuda"))
+                cpu, gpu = (self.run_on(backend, INPUTS / name, f"{backend}_{stem}", *coarse, "--set", '/output/formats=["hdf5"]') for backend in ("cpu", "cuda"))
                 (time, steps, precision), (gpu_time, gpu_steps, _) = cpu[2], gpu[2]
                 self.assertEqual(sorted(cpu[0]), sorted(gpu[0]))
                 worst = differences(cpu, gpu)
@@ -88,14 +80,14 @@ class Gpu(ProgramTest):
 
     def test_resume(self):
         deck = self.write(small_deck())
-        self.run_on("cuda", deck, "resumed", ["/time/end=0.05"])
+        self.run_on("cuda", deck, "resumed", "--set", "/time/end=0.05")
         self.assertIn("--backend cuda", self.expect(DECK, "run", deck, "-o", "resumed", "--backend", "cpu", "--set", "/time/end=0.1", "--resume", "auto"))
-        resumed = self.run_on("cuda", deck, "resumed", ["/time/end=0.1"], "--resume", "auto")
-        self.assertLess(max(differences(self.run_on("cpu", deck, "whole", ["/time/end=0.1"]), resumed).values()), ROUND_OFF["f64"])
+        resumed = self.run_on("cuda", deck, "resumed", "--set", "/time/end=0.1", "--resume", "auto")
+        self.assertLess(max(differences(self.run_on("cpu", deck, "whole", "--set", "/time/end=0.1"), resumed).values()), ROUND_OFF["f64"])
 
     def test_output_does_not_change_the_flow(self):
         deck = self.write(small_deck())
-        seldom, often = (self.run_on("cuda", deck, f"every_{interval}", [f"/output/interval={interval}"]) for interval in ("0.1", "0.005"))
+        seldom, often = (self.run_on("cuda", deck, f"every_{interval}", "--set", f"/output/interval={interval}") for interval in ("0.1", "0.005"))
         self.assertLess(max(differences(seldom, often).values()), ROUND_OFF["f64"])
 
 

@@ -6,7 +6,7 @@ import signal
 import time
 import unittest
 
-from harness import DECK, DONE, INPUTS, IO, STOPPED, ProgramTest, small_deck, stop
+from harness import DECK, DONE, INPUTS, IO, STOPPED, ProgramTest, coarse_decks, small_deck, stop
 
 
 class Resume(ProgramTest):
@@ -137,10 +137,8 @@ class Resume(ProgramTest):
         self.run_deck(deck, "out", "--resume", str(out / "checkpoint.h5"), code=IO)
 
     def test_scenes_of_every_material_resume(self):
-        lines = (INPUTS / "coarse.txt").read_text().splitlines()
-        forms = {line.split()[0]: line.split()[1:] for line in lines if line.strip() and not line.startswith("#")}
         for name in ("aluminium_bars.json", "elastic_block.json", "dam_break_friction.json", "granular_column_a2.json"):
-            arguments = [part for assignment in forms[name] for part in ("--set", assignment)]
+            arguments = coarse_decks()[name]
             stem = pathlib.Path(name).stem
             self.run_deck(INPUTS / name, f"{stem}-whole", *arguments)
             self.run_deck(INPUTS / name, f"{stem}-out", *arguments, "--set", "/time/end=0.02")
