@@ -1,6 +1,8 @@
 """What the checks of this folder share: running a deck, comparing a figure with its band, drawing."""
 import argparse
 import csv
+import datetime
+import json
 import os
 import pathlib
 import shutil
@@ -12,17 +14,24 @@ sys.path.insert(0, str(ROOT / "scripts" / "python"))
 
 import matplotlib  # noqa: E402
 import numpy as np  # noqa: E402
+import PIL.Image  # noqa: E402
 
+import bands  # noqa: E402
 from results import Results  # noqa: E402
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 
 GRAVITY = 9.81  # m/s², as in the decks
+PICTURE_BYTES = 60_000
 
 
 class Check:
-    """One case: its options, its runs, its verdicts. Use: check = Check(__doc__, __file__) … check.finish()."""
+    """One case: its options, its runs, its figures. Use: check = Check(__doc__, __file__) … check.finish().
+
+    Every figure is judged by the band of its key in validation/bands.json; a figure without a band, or a band that no figure met, is an error.
+    finish() leaves out/validation/CASE/figures.json, from which the page docs/validation.md is made.
+    """
 
     def __init__(self, description, file):
         parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -30,53 +39,91 @@ class Check:
         parser.add_argument("--reuse", action="store_true", help="take runs that are there and complete instead of running them again")
         options = parser.parse_args()
         self.quick, self.reuse = options.quick, options.reuse
-        self.name = pathlib.Path(file).resolve().parent.name
+        self.form = "quick" if self.quick else "full"
+        self.folder = pathlib.Path(file).resolve().parent
+        self.name = self.folder.name
         self.out = ROOT / "out" / "validation" / (self.name + ("_quick" if self.quick else ""))
         self.out.mkdir(parents=True, exist_ok=True)
+        self.report = self.out / "figures.json"
+        self.report.unlink(missing_ok=True)
         self.program = pathlib.Path(os.environ.get("JAXMPM", ROOT / "build" / "jaxmpm"))
-        self.failures = 0
+        # Threads that wait for one another spin: on a machine that does other things too, a small scene is faster by far with one.
+        self.environment = {**os.environ, **({"OMP_NUM_THREADS": "1"} if self.quick else {})}
+        self.bands = bands.cases().get(self.name, {})
+        self.figures, self.runs, self.failures = [], {}, 0
         print(f"{self.name}{' (quick)' if self.quick else ''}")
 
     def command(self, deck, name, assignments=None, *more):
-        words = [str(self.program), "run", str(ROOT / "inputs" / deck), "-o", str(self.out / name), "-q", *more]
+        """The command line that runs a deck of the case's folder, or else of inputs/, into out/validation/CASE/NAME."""
+        place = self.folder / deck if (self.folder / deck).is_file() else ROOT / "inputs" / deck
+        words = [str(self.program), "run", str(place), "-o", str(self.out / name), "-q", *more]
         for pointer, value in (assignments or {}).items():
             words += ["--set", f"{pointer}={value}"]
         return words
 
     def run(self, deck, name, assignments=None, *more):
-        """Runs inputs/DECK into out/validation/CASE/NAME and reads the results."""
+        """Runs a deck into out/validation/CASE/NAME and reads the results."""
         target = self.out / name
         if not (self.reuse and (target / "run.json").is_file()):
             shutil.rmtree(target, ignore_errors=True)
-            done = subprocess.run(self.command(deck, name, assignments, *more), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
+            command = self.command(deck, name, assignments, *more)
+            done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False, env=self.environment)
             if done.returncode:
                 sys.exit(f"  {name}: exit {done.returncode}\n{done.stdout}")
         results = Results(target)
         summary = results.run()
+        kept = {key: summary[key] for key in ("particles", "steps", "seconds", "threads", "backend", "git_commit")}
+        self.runs[name] = {**kept, "cell_size": results.deck["domain"]["cell_size"]}
         print(f"  {name}: {summary['particles']} particles, {summary['steps']} steps, {summary['seconds']:.1f} s, {summary['particle_steps_per_second']:.3g} particle-steps/s")
         return results
 
-    def band(self, what, value, limit, unit="", lower=None):
-        """Prints a figure and fails the check where it lies above `limit` or below `lower`."""
-        good = np.isfinite(value) and value <= limit and (lower is None or value >= lower)
-        allowed = f"at most {limit:g}" if lower is None else f"{lower:g} … {limit:g}"
-        print(f"  {'ok    ' if good else 'FAILED'} {what}: {value:.4g} {unit} ({allowed})".replace("  (", " ("))
+    def figure(self, key, value, label="", found=None, reference=None):
+        """Judges a figure by its band. `label` tells several figures of one band apart; `found` and `reference` are what the figure compares, as
+        numbers in its own unit or as texts, for the page."""
+        if key not in self.bands:
+            sys.exit(f"  {self.name}: the figure '{key}' has no band in validation/{bands.FILE.name}")
+        band = self.bands[key]
+        value = value if isinstance(value, bool) else float(value)
+        good = band.holds(value, self.form)
+        verdict = "      " if band.limit(self.form) is None else "ok    " if good else "FAILED"
+        said = ("yes" if value else "no") if isinstance(value, bool) else f"{value:.4g} {band.unit}".rstrip()
+        beside = "" if reference is None else f"; {_text(found)} against {_text(reference)}"
+        print(f"  {verdict} {', '.join(filter(None, (band.what, label)))}: {said} ({band.text(self.form)}{beside})")
         self.failures += not good
+        self.figures.append({"band": key, "label": label, "value": value, "found": _text(found), "reference": _text(reference)})
 
-    def require(self, what, good):
-        print(f"  {'ok    ' if good else 'FAILED'} {what}")
-        self.failures += not good
+    def holds(self, key, good, label=""):
+        """A figure that is true or false."""
+        self.figure(key, bool(good), label)
 
     def note(self, text):
         print(f"         {text}")
 
     def save(self, figure, name="comparison.png"):
-        figure.savefig(self.out / name, dpi=130)
+        """Leaves a picture of less than 60 kB; the page shows the one called comparison.png."""
+        path = self.out / name
+        for dpi in (100, 85, 70, 55):
+            figure.savefig(path, dpi=dpi)
+            with PIL.Image.open(path) as image:
+                image.convert("RGB").quantize(64, dither=PIL.Image.Dither.NONE).save(path, optimize=True)
+            if path.stat().st_size < PICTURE_BYTES:
+                break
         plt.close(figure)
-        print(f"         picture: {self.out / name}")
+        print(f"         picture: {path}")
 
     def finish(self):
+        met = {figure["band"] for figure in self.figures}
+        for key, band in self.bands.items():
+            if key not in met and band.limit(self.form) is not None:
+                print(f"  FAILED the band '{key}' of validation/{bands.FILE.name} has met no figure")
+                self.failures += 1
+        report = {"case": self.name, "form": self.form, "date": datetime.date.today().isoformat(), "runs": self.runs, "figures": self.figures}
+        self.report.write_text(json.dumps(report, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
         sys.exit(1 if self.failures else 0)
+
+
+def _text(value):
+    return value if value is None or isinstance(value, str) else f"{value:.4g}"
 
 
 def reference(name):

@@ -29,7 +29,6 @@ def main():
     later = table["Z"] > ORIGIN
     places, measured = table["Z"][later], table["T"][later]
     cells = (20,) if check.quick else (20, 40, 80)
-    limits = {20: 0.08, 40: 0.05, 80: 0.05}
     figure, axes = plt.subplots(1, 2, figsize=(10, 4), layout="constrained")
     for count in cells:
         results = check.run("water_column.json", f"a_{count}", {"/domain/cell_size": WIDTH / count})
@@ -39,7 +38,8 @@ def main():
             of_time = np.abs(since + start - measured) / measured
             check.note(f"a/{count}, gauge {gauge}: largest deviation {100 * of_elapsed.max():.2f} % of the time since Z = {ORIGIN}, {100 * of_time.max():.2f} % of the time since release")
             if gauge == "front":
-                check.band(f"times since Z = {ORIGIN} of passing Z = {places[0]} … {places[-1]}, a/{count}", 100 * of_elapsed.max(), 100 * limits[count], "%")
+                worst = of_elapsed.argmax()
+                check.figure("front", 100 * of_elapsed.max(), f"a/{count}, at Z = {places[worst]:g}", f"T = {since[worst]:.3f}", f"T = {measured[worst] - start:.3f}")
         clock, place = front(results)
         axes[0].plot(clock - first_crossing(clock, place, ORIGIN) + start, place, lw=1.2, label=f"a/{count}")
         time, height = results.gauge("height")

@@ -51,11 +51,11 @@ def main():
         stem = deck.removesuffix(".json")
         whole = check.run(deck, f"{stem}_whole", assignments, "--threads", "2")
         one = check.run(deck, f"{stem}_one_thread", assignments, "--threads", "1")
-        check.require(f"{deck}: 1 thread equals 2 threads", same_bits(whole, one))
+        check.holds("threads", same_bits(whole, one), stem)
         quiet = check.run(deck, f"{stem}_quiet", {**assignments, "/output/interval": assignments["/time/end"], "/output/gauge_interval": assignments["/time/end"]})
-        check.require(f"{deck}: with output equals without", same_bits(whole, quiet))
+        check.holds("output", same_bits(whole, quiet), stem)
         resumed, stops = interrupted(check, deck, f"{stem}_resumed", assignments)
-        check.require(f"{deck}: stopped {stops} times and resumed equals the whole run", stops > 0 and same_bits(whole, resumed))
+        check.holds("resumed", stops > 0 and same_bits(whole, resumed), f"{stem}, stopped {stops} times")
     check.finish()
 
 
