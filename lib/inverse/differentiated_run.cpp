@@ -57,15 +57,20 @@ class Walk {
 /// The reverse run: a stack of kept states, the newest below the step that is reversed next.
 class Reversal {
  public:
-  Reversal(ReversibleSolver& solver, const StepSequence& steps, Observer& observer, std::size_t snapshots,
+  Reversal(ReversibleSolver& solver, const StepSequence& steps, Observer& observer, std::size_t snapshots, SnapshotPool& pool,
            const std::function<bool()>& stop)
       : solver_(solver),
         steps_(steps),
         observer_(observer),
         stop_(stop),
         walk_(solver.forward(), steps, observer, stop),
-        snapshots_(snapshots) {
+        snapshots_(snapshots),
+        pool_(pool) {
+    pool_.prepare(solver.kept_bytes(), snapshots);
     keep(0);
+  }
+  ~Reversal() {
+    while (!kept_.empty()) forget();
   }
 
   ModelGradient run(RunCost& cost) {
@@ -97,19 +102,23 @@ class Reversal {
  private:
   struct Snapshot {
     std::size_t state;
-    std::unique_ptr<KeptState> kept;
+    std::byte* numbers;
+    std::unique_ptr<KeptState> rest;
   };
   static constexpr std::size_t lost = ~std::size_t(0);
 
   void keep(std::size_t state) {
-    Snapshot snapshot{state, nullptr};
-    if (!unused_.empty()) snapshot.kept = std::move(unused_.back()), unused_.pop_back();
-    solver_.keep(snapshot.kept);
-    kept_.push_back(std::move(snapshot));
+    kept_.push_back({state, pool_.take(), nullptr});
+    kept_.back().rest = solver_.keep(kept_.back().numbers);
     present_ = state;
   }
+  void forget() {
+    pool_.give_back(kept_.back().numbers);
+    kept_.pop_back();
+  }
+  void go_back() { solver_.go_back(*kept_.back().rest, kept_.back().numbers); }
   void go_to(std::size_t state) {
-    if (present_ != state) solver_.go_back(*kept_.back().kept);
+    if (present_ != state) go_back();
     present_ = lost;  // it is about to move on
   }
   void start_reverse(std::size_t end) {
@@ -121,12 +130,11 @@ class Reversal {
     go_to(start);
     solver_.step_adjoint(steps_.dt[start]);
     if (start == 0 || looked_at(start)) {
-      solver_.go_back(*kept_.back().kept);
+      go_back();
       add_looks(start);
     }
     present_ = lost;
-    unused_.push_back(std::move(kept_.back().kept));
-    kept_.pop_back();
+    forget();
   }
   bool looked_at(std::size_t state) const { return std::binary_search(steps_.looks.begin(), steps_.looks.end(), state); }
   void add_looks(std::size_t state) {
@@ -140,8 +148,8 @@ class Reversal {
   const std::function<bool()>& stop_;
   Walk walk_;
   std::size_t snapshots_, present_ = 0;
+  SnapshotPool& pool_;
   std::vector<Snapshot> kept_;
-  std::vector<std::unique_ptr<KeptState>> unused_;
 };
 
 /// The next moment of a run that also meets the observer's times.
@@ -182,13 +190,15 @@ void replay_run(const Model& model, const StepSequence& steps, Observer& observe
   Walk(solver->forward(), steps, observer, stop).advance(0, steps.dt.size());
 }
 
-MemoryPlan plan_gradient(const Model& model, const StepSequence& steps, std::size_t memory_bytes) {
+MemoryPlan plan_gradient(const Model& model, const StepSequence& steps, std::size_t memory_bytes, const SnapshotPool& pool) {
   const std::unique_ptr<ReversibleSolver> solver = make_reversible_solver(model);
   MemoryPlan plan;
   plan.steps = steps.dt.size();
-  plan.snapshot_bytes = solver->kept_bytes();
-  // Besides snapshots: the program as it stands (with this stepper in it), and the derivatives, as large as a state.
-  const std::size_t fixed = resident_bytes() + 2 * plan.snapshot_bytes;
+  plan.snapshot_bytes = solver->kept_bytes() + solver->shared_bytes();
+  // Besides snapshots: the program as it stands (with this stepper in it, less the pool's memory), and the derivatives, as large as a
+  // state.
+  const std::size_t resident = resident_bytes();
+  const std::size_t fixed = resident - std::min(pool.bytes(), resident) + 2 * plan.snapshot_bytes;
   const std::size_t fitting = memory_bytes > fixed ? (memory_bytes - fixed) / plan.snapshot_bytes : 0;
   constexpr std::size_t least = 2;
   if (fitting < least && plan.steps > 1)
@@ -203,10 +213,10 @@ MemoryPlan plan_gradient(const Model& model, const StepSequence& steps, std::siz
   return plan;
 }
 
-ModelGradient differentiate_run(const Model& model, const StepSequence& steps, Observer& observer, const MemoryPlan& plan, RunCost& cost,
-                                const std::function<bool()>& stop) {
+ModelGradient differentiate_run(const Model& model, const StepSequence& steps, Observer& observer, const MemoryPlan& plan,
+                                SnapshotPool& pool, RunCost& cost, const std::function<bool()>& stop) {
   const std::unique_ptr<ReversibleSolver> solver = make_reversible_solver(model);
-  ModelGradient gradient = Reversal(*solver, steps, observer, plan.snapshots, stop).run(cost);
+  ModelGradient gradient = Reversal(*solver, steps, observer, plan.snapshots, pool, stop).run(cost);
   cost.measured_peak_bytes = peak_memory_bytes();
   return gradient;
 }

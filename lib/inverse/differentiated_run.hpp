@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "inverse/observer.hpp"
+#include "inverse/snapshot_pool.hpp"
 
 namespace jaxmpm {
 
@@ -33,13 +34,13 @@ StepSequence record_run(const Model& model, Observer& observer, const std::funct
 /// The same with given steps: exactly these, whatever the state would choose.
 void replay_run(const Model& model, const StepSequence& steps, Observer& observer, const std::function<bool()>& stop);
 
-/// Plan of a gradient within `memory_bytes`. Throws Error (exit 2) when not even one snapshot fits.
-MemoryPlan plan_gradient(const Model& model, const StepSequence& steps, std::size_t memory_bytes);
+/// Plan of a gradient within `memory_bytes`, of which `pool` may hold some already. Throws Error (exit 2) when not even one snapshot fits.
+MemoryPlan plan_gradient(const Model& model, const StepSequence& steps, std::size_t memory_bytes, const SnapshotPool& pool);
 
 /// Loss (through the observer) and its gradient by the model. Branches (contact, return mapping, clamps) are differentiated as taken, dt is
-/// held constant. The bits depend neither on the plan nor on the number of threads.
-ModelGradient differentiate_run(const Model& model, const StepSequence& steps, Observer& observer, const MemoryPlan& plan, RunCost& cost,
-                                const std::function<bool()>& stop);
+/// held constant. The bits depend neither on the plan nor on the number of threads. `pool` serves gradient after gradient.
+ModelGradient differentiate_run(const Model& model, const StepSequence& steps, Observer& observer, const MemoryPlan& plan,
+                                SnapshotPool& pool, RunCost& cost, const std::function<bool()>& stop);
 
 /// Thrown by the functions above when `stop` says so.
 struct Stopped {};

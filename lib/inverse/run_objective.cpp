@@ -52,10 +52,10 @@ Evaluation RunObjective::loss(const Values& values) {
 Evaluation RunObjective::gradient(const Values& values) {
   const deck::Deck deck = with_values(deck_, values);
   const Model model = build_model(deck);
-  const MemoryPlan plan = plan_gradient(model, steps_, memory_);
+  const MemoryPlan plan = plan_gradient(model, steps_, memory_, pool_);
   tell_plan(plan);
   RunCost cost;
-  const ModelGradient by_model = differentiate_run(model, steps_, *observer_, plan, cost, stop_);
+  const ModelGradient by_model = differentiate_run(model, steps_, *observer_, plan, pool_, cost, stop_);
   const Watch watch;
   Evaluation found;
   found.loss = observer_->loss();

@@ -29,6 +29,7 @@ class RunObjective : public Objective {
   std::function<bool()> stop_;
   std::unique_ptr<Observer> observer_;
   StepSequence steps_;
+  SnapshotPool pool_;
   bool plan_told_ = false;
 };
 

@@ -46,6 +46,10 @@ struct ParticleRows {
   alignas(64) T value[W * stride];
   const T* row(int lane) const { return value + lane * stride; }
   T* row(int lane) { return value + lane * stride; }
+  /// Zeros for the lanes behind the first `count`.
+  JAXMPM_INLINE void clear_behind(int count) {
+    if (count < W) std::memset(row(count), 0, sizeof(T) * std::size_t((W - count) * stride));
+  }
   /// Fills the rows from packs (of which there are `stride`; the ones past Count are padding).
   JAXMPM_INLINE void fill(Pack<T, W>* packs) {
     for (int first = 0; first < stride; first += W) {

@@ -1,11 +1,13 @@
 #pragma once
 // A stepper that also runs backwards: the discrete adjoint of its own step (docs/gradients.md).
+#include <cstddef>
+
 #include "solvers/model_gradient.hpp"
 #include "solvers/solver.hpp"
 
 namespace jaxmpm {
 
-/// A state kept in memory, to go back to. Its buffers are used again when another state is kept in it.
+/// A state to go back to, besides the numbers of its particles.
 class KeptState {
  public:
   virtual ~KeptState() = default;
@@ -16,12 +18,13 @@ class ReversibleSolver {
   virtual ~ReversibleSolver() = default;
   /// The stepper itself: the present state and the way forward.
   virtual Solver& forward() = 0;
-  /// Bytes that one kept state takes.
+  /// Bytes of the particles' numbers of a kept state, and of what states share until the next sort.
   virtual std::size_t kept_bytes() const = 0;
-  /// Keeps the present state in `into`, which is made when it is null.
-  virtual void keep(std::unique_ptr<KeptState>& into) = 0;
+  virtual std::size_t shared_bytes() const = 0;
+  /// Keeps the present state; the particles' numbers are written to `numbers`, kept_bytes() of them.
+  virtual std::unique_ptr<KeptState> keep(std::byte* numbers) = 0;
   /// Makes a kept state the present one.
-  virtual void go_back(const KeptState& kept) = 0;
+  virtual void go_back(const KeptState& kept, const std::byte* numbers) = 0;
 
   /// Starts a reverse run: all derivatives are zero.
   virtual void start_reverse() = 0;

@@ -1,11 +1,39 @@
 #include "solvers/reversible_step.hpp"
 
 #include <algorithm>
+#include <cstring>
 
 #include "core/parallel_host.hpp"
 #include "materials/constants.hpp"
 
 namespace jaxmpm {
+namespace {
+
+/// Part of a field, and where it lies among the numbers of a kept state, in bytes.
+struct Stretch {
+  std::byte* field;
+  std::size_t offset, size;
+};
+
+/// Appends the fields that a step changes, in pieces that several threads can share.
+template <class T, int Dim>
+void add_stretches(Particles<T, Dim>& p, std::vector<Stretch>& stretches) {
+  constexpr std::size_t piece = std::size_t(1) << 15;
+  p.for_each_changing_field([&](auto& field) {
+    const std::size_t bytes = field.size() * sizeof(field[0]);
+    const std::size_t before = stretches.empty() ? 0 : stretches.back().offset + stretches.back().size;
+    for (std::size_t done = 0; done < bytes; done += piece)
+      stretches.push_back({reinterpret_cast<std::byte*>(field.data()) + done, before + done, std::min(piece, bytes - done)});
+  });
+}
+
+template <class Copy>
+void copy_stretches(const std::vector<Stretch>& stretches, Copy&& copy) {
+  parallel_for_host_static("jaxmpm::keep", stretches.size(),
+                           [&](std::size_t k) { copy(stretches[k].field, stretches[k].offset, stretches[k].size); });
+}
+
+}  // namespace
 
 /// ExplicitStep::step(), read upwards. Nothing of the grid is kept: the first half of the step is done again.
 template <class T, int Dim>
@@ -93,43 +121,47 @@ template <class T, int Dim>
 std::size_t ReversibleStep<T, Dim>::kept_bytes() const {
   std::size_t bytes = 0;
   for (const Particles<T, Dim>& p : this->bodies_)
-    p.for_each_field([&](const std::string&, const auto& field) { bytes += field.size() * sizeof(field[0]); });
-  return bytes + this->blocks_.tiles.size() * (sizeof(Tile) + sizeof(std::int64_t));
+    p.for_each_changing_field([&](const auto& field) { bytes += field.size() * sizeof(field[0]); });
+  return bytes;
 }
 
 template <class T, int Dim>
-void ReversibleStep<T, Dim>::keep(std::unique_ptr<KeptState>& into) {
-  if (epoch_sorts_ != this->sorts_) {
-    auto epoch = std::make_shared<Epoch>();
-    for (const Particles<T, Dim>& p : this->bodies_) epoch->mass.push_back(p.mass), epoch->id.push_back(p.id);
-    epoch->tiles = this->blocks_.tiles, epoch->tile_key = this->tile_key_;
-    epoch_ = std::move(epoch), epoch_sorts_ = this->sorts_;
-  }
-  if (!into) into = std::make_unique<Kept>();
-  Kept& kept = static_cast<Kept&>(*into);
-  kept.epoch = epoch_, kept.numbers = this->numbers_;
-  kept.bodies.resize(this->bodies_.size());
-  for (std::size_t b = 0; b < kept.bodies.size(); ++b) {
-    const Particles<T, Dim>& p = this->bodies_[b];
-    kept.bodies[b].position = p.position, kept.bodies[b].velocity = p.velocity, kept.bodies[b].compression = p.compression;
-    kept.bodies[b].affine = p.affine, kept.bodies[b].history = p.history;
-  }
+std::size_t ReversibleStep<T, Dim>::shared_bytes() const {
+  std::size_t bytes = this->blocks_.tiles.size() * (sizeof(Tile) + sizeof(std::int64_t));
+  for (const Particles<T, Dim>& p : this->bodies_) bytes += p.count() * (sizeof(T) + sizeof(std::uint32_t));
+  return bytes;
 }
 
 template <class T, int Dim>
-void ReversibleStep<T, Dim>::go_back(const KeptState& state) {
+auto ReversibleStep<T, Dim>::present_epoch() -> std::shared_ptr<const Epoch> {
+  if (epoch_sorts_ == this->sorts_) return epoch_;
+  auto epoch = std::make_shared<Epoch>();
+  for (const Particles<T, Dim>& p : this->bodies_) epoch->mass.push_back(p.mass), epoch->id.push_back(p.id);
+  epoch->tiles = this->blocks_.tiles, epoch->tile_key = this->tile_key_;
+  epoch_ = std::move(epoch), epoch_sorts_ = this->sorts_;
+  return epoch_;
+}
+
+template <class T, int Dim>
+std::unique_ptr<KeptState> ReversibleStep<T, Dim>::keep(std::byte* numbers) {
+  std::vector<Stretch> stretches;
+  for (Particles<T, Dim>& p : this->bodies_) add_stretches(p, stretches);
+  copy_stretches(stretches, [&](std::byte* field, std::size_t offset, std::size_t size) { std::memcpy(numbers + offset, field, size); });
+  auto kept = std::make_unique<Kept>();
+  kept->epoch = present_epoch(), kept->numbers = this->numbers_;
+  return kept;
+}
+
+template <class T, int Dim>
+void ReversibleStep<T, Dim>::go_back(const KeptState& state, const std::byte* numbers) {
   const Kept& kept = static_cast<const Kept&>(state);
-  const bool same = kept.epoch == epoch_ && epoch_sorts_ == this->sorts_;
-  for (std::size_t b = 0; b < kept.bodies.size(); ++b) {
-    Particles<T, Dim>& p = this->bodies_[b];
-    const Particles<T, Dim>& from = kept.bodies[b];
-    p.position = from.position, p.velocity = from.velocity, p.compression = from.compression;
-    p.affine = from.affine, p.history = from.history;
-    if (!same) p.mass = kept.epoch->mass[b], p.id = kept.epoch->id[b];
-  }
+  std::vector<Stretch> stretches;
+  for (Particles<T, Dim>& p : this->bodies_) add_stretches(p, stretches);
+  copy_stretches(stretches, [&](std::byte* field, std::size_t offset, std::size_t size) { std::memcpy(field, numbers + offset, size); });
   this->numbers_ = kept.numbers;
-  if (same) return;
+  if (kept.epoch == epoch_ && epoch_sorts_ == this->sorts_) return;
   epoch_ = kept.epoch, epoch_sorts_ = this->sorts_;
+  for (std::size_t b = 0; b < this->bodies_.size(); ++b) this->bodies_[b].mass = epoch_->mass[b], this->bodies_[b].id = epoch_->id[b];
   this->blocks_.tiles = epoch_->tiles, this->tile_key_ = epoch_->tile_key;
   this->rebuild_blocks();
 }

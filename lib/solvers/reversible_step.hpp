@@ -13,8 +13,9 @@ class ReversibleStep final : public ExplicitStep<T, Dim>, public ReversibleSolve
 
   Solver& forward() override { return *this; }
   std::size_t kept_bytes() const override;
-  void keep(std::unique_ptr<KeptState>& into) override;
-  void go_back(const KeptState& kept) override;
+  std::size_t shared_bytes() const override;
+  std::unique_ptr<KeptState> keep(std::byte* numbers) override;
+  void go_back(const KeptState& kept, const std::byte* numbers) override;
 
   void start_reverse() override;
   void add_gradient(const SnapshotGradient& by) override;
@@ -37,10 +38,10 @@ class ReversibleStep final : public ExplicitStep<T, Dim>, public ReversibleSolve
   };
   struct Kept final : KeptState {
     std::shared_ptr<const Epoch> epoch;
-    std::vector<Particles<T, Dim>> bodies;  // position, velocity, compression, affine and history
     StepNumbers numbers;
   };
 
+  std::shared_ptr<const Epoch> present_epoch();
   void g2p_adjoint();
   void update_grid_adjoint(double dt);
   void p2g_adjoint();

@@ -56,6 +56,16 @@ struct Particles {
     visit(*this, f);
   }
 
+  /// Calls f(array) for every array that a step changes; sorting moves the others as well.
+  template <class F>
+  void for_each_changing_field(F&& f) {
+    visit_changing(*this, f);
+  }
+  template <class F>
+  void for_each_changing_field(F&& f) const {
+    visit_changing(*this, f);
+  }
+
   std::size_t bytes_per_particle() const {
     std::size_t sum = 0;
     for_each_field([&](const std::string&, const auto& array) { sum += sizeof(array[0]); });
@@ -72,6 +82,13 @@ struct Particles {
     f(std::string("mass"), self.mass), f(std::string("compression"), self.compression);
     components("affine", self.affine), components("history", self.history), components("gradient", self.gradient);
     f(std::string("id"), self.id);
+  }
+  template <class Self, class F>
+  static void visit_changing(Self& self, F& f) {
+    for (auto& array : self.position) f(array);
+    for (auto* arrays : {&self.velocity, &self.affine, &self.history})
+      for (auto& array : *arrays) f(array);
+    f(self.compression);
   }
 };
 

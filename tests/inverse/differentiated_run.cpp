@@ -70,7 +70,8 @@ ModelGradient gradient_of(const Model& model, const StepSequence& steps, Observe
   MemoryPlan plan;
   plan.steps = steps.dt.size(), plan.snapshots = snapshots;
   RunCost cost;
-  return differentiate_run(model, steps, observer, plan, cost, {});
+  SnapshotPool pool;
+  return differentiate_run(model, steps, observer, plan, pool, cost, {});
 }
 
 /// Central difference of the loss by a number of the model, over the same steps, and what round-off leaves uncertain of it.

@@ -43,8 +43,8 @@ template <int Dim>
 double mismatch(const Model& model, double dt) {
   ReversibleStep<double, Dim> solver(model);
   for (int k = 0; k < 3; ++k) solver.step(dt);
-  std::unique_ptr<KeptState> start;
-  solver.keep(start);
+  std::vector<std::byte> numbers(solver.kept_bytes());
+  const std::unique_ptr<KeptState> start = solver.keep(numbers.data());
   std::mt19937_64 random(5);
   std::normal_distribution<double> normal;
   ReferenceState<Number> state = state_of<Dim>(model, solver.particles());
@@ -64,7 +64,7 @@ double mismatch(const Model& model, double dt) {
       bar = w / scale;
       Jv_w += slow.derivative[0] * bar, Jv2 += std::pow(slow.derivative[0] / scale, 2), w2 += w * w;
     });
-  solver.go_back(*start);
+  solver.go_back(*start, numbers.data());
   solver.step_adjoint(dt);
   double v_Jtw = 0;
   for (std::size_t b = 0; b < direction.size(); ++b) {

@@ -13,13 +13,13 @@ struct PlaceSums {
   static constexpr int padded = (Sch::Dim + per_store - 1) / per_store * per_store;
   ParticleRows<T, 4 * padded> rows;
 
-  JAXMPM_INLINE PlaceSums() { std::memset(rows.value, 0, sizeof rows.value); }
   /// Takes the packs of one particle.
   JAXMPM_INLINE void put(int lane, const Pack<T, RowShape<T, Sch::S>::N>* sums) {
     for (int i = 0; i < padded; i += per_store) sum_quads<T, RowShape<T, Sch::S>::N>(sums + i).store(rows.row(lane) + 4 * i);
   }
   /// Adds them to the derivatives by position.
-  JAXMPM_INLINE void add_to(Particles<T, Sch::Dim>& bar, std::size_t s, int count) const {
+  JAXMPM_INLINE void add_to(Particles<T, Sch::Dim>& bar, std::size_t s, int count) {
+    rows.clear_behind(count);
     Pack<T, batch<T>> packs[decltype(rows)::stride];
     rows.read(packs);
     for (int j = 0; j < Sch::Dim; ++j) {
@@ -108,7 +108,6 @@ void p2g_adjoint_tile(const Particles<typename Sch::T, Sch::Dim>& p, std::size_t
     const Stencils<Sch, with_d, with_g, true> t(p, s, count, origin);
     const Q q(p, s, count, material, step);
     ParticleRows<T, 4 * padded> gathered;
-    std::memset(gathered.value, 0, sizeof gathered.value);
     PlaceSums<Sch> by_place;
     for (int l = 0; l < count; ++l) {
       if (t.base[l] != current) {
@@ -130,6 +129,7 @@ void p2g_adjoint_tile(const Particles<typename Sch::T, Sch::Dim>& p, std::size_t
       for (int i = 0; i < padded; i += per_store) sum_quads<T, R::lanes>(sums + i).store(gathered.row(l) + 4 * i);
       by_place.put(l, place);
     }
+    gathered.clear_behind(count);
     Pack<T, W> packs[decltype(gathered)::stride];
     gathered.read(packs);
     by_place.add_to(bar, s, count);

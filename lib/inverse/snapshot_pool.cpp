@@ -1,0 +1,39 @@
+#include "inverse/snapshot_pool.hpp"
+
+#include <algorithm>
+#include <new>
+#include <stdexcept>
+
+namespace jaxmpm {
+namespace {
+
+constexpr std::align_val_t cache_line{64};
+constexpr std::size_t chunk_bytes = std::size_t(32) << 20;
+
+}  // namespace
+
+void SnapshotPool::Release::operator()(std::byte* chunk) const { ::operator delete(chunk, cache_line); }
+
+void SnapshotPool::prepare(std::size_t bytes, std::size_t most) {
+  constexpr std::size_t line = std::size_t(cache_line);
+  bytes = (bytes + line - 1) / line * line;
+  if (bytes != block_bytes_) chunks_.clear(), free_.clear(), blocks_ = 0;
+  block_bytes_ = bytes, most_ = most;
+}
+
+std::byte* SnapshotPool::take() {
+  if (free_.empty()) add_chunk();
+  std::byte* block = free_.back();
+  free_.pop_back();
+  return block;
+}
+
+void SnapshotPool::add_chunk() {
+  if (blocks_ >= most_) throw std::logic_error("more snapshots than planned");
+  const std::size_t count = std::min(std::max<std::size_t>(chunk_bytes / block_bytes_, 1), most_ - blocks_);
+  chunks_.emplace_back(static_cast<std::byte*>(::operator new(count* block_bytes_, cache_line)));
+  for (std::size_t k = count; k-- > 0;) free_.push_back(chunks_.back().get() + k * block_bytes_);
+  blocks_ += count;
+}
+
+}  // namespace jaxmpm

@@ -1,0 +1,31 @@
+#pragma once
+// Memory for the states that a reverse run keeps. Fresh memory may cost as much as the steps themselves (each page is cleared when it is
+// first touched), so what was given back is used again, by the next gradient as well.
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+namespace jaxmpm {
+
+class SnapshotPool {
+ public:
+  /// Blocks of `bytes` from now on, at most `most` of them at once. None may be in use. Keeps the memory of before when the size is the
+  /// same.
+  void prepare(std::size_t bytes, std::size_t most);
+  std::byte* take();
+  void give_back(std::byte* block) { free_.push_back(block); }
+  /// Bytes taken from the system.
+  std::size_t bytes() const { return blocks_ * block_bytes_; }
+
+ private:
+  struct Release {
+    void operator()(std::byte* chunk) const;
+  };
+  void add_chunk();
+
+  std::size_t block_bytes_ = 0, most_ = 0, blocks_ = 0;
+  std::vector<std::unique_ptr<std::byte, Release>> chunks_;
+  std::vector<std::byte*> free_;
+};
+
+}  // namespace jaxmpm
