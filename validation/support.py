@@ -105,7 +105,7 @@ class Check:
         for dpi in (100, 85, 70, 55):
             figure.savefig(path, dpi=dpi)
             with PIL.Image.open(path) as image:
-                image.convert("RGB").quantize(64, dither=PIL.Image.Dither.NONE).save(path, optimize=True)
+                image.convert("RGB").quantize(256, method=PIL.Image.Quantize.MAXCOVERAGE, dither=PIL.Image.Dither.NONE).save(path, optimize=True)
             if path.stat().st_size < PICTURE_BYTES:
                 break
         plt.close(figure)
