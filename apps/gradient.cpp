@@ -22,7 +22,7 @@ Json gradient_json(const Evaluation& at, const Unknowns& unknowns) {
   Json json{{"loss", at.loss}, {"gradient", Json::object()}};
   for (const std::string& pointer : unknowns.pointers()) {
     const std::vector<double>& numbers = at.gradient.at(pointer);
-    json["gradient"][pointer] = deck::is_network(pointer) ? Json(numbers) : Json(numbers.at(0));
+    json["gradient"][pointer] = deck::is_list(pointer) ? Json(numbers) : Json(numbers.at(0));
   }
   return json;
 }
@@ -50,8 +50,7 @@ void print_gradient(const Evaluation& at, const Unknowns& unknowns) {
     const std::vector<double>& numbers = at.gradient.at(pointer);
     double square = 0;
     for (const double g : numbers) square += g * g;
-    if (deck::is_network(pointer))
-      std::cout << fmt::format("{}: {} weights, |gradient| {:.9e}\n", pointer, numbers.size(), std::sqrt(square));
+    if (deck::is_list(pointer)) std::cout << fmt::format("{}: {} values, |gradient| {:.9e}\n", pointer, numbers.size(), std::sqrt(square));
     else std::cout << fmt::format("{}  {:.9e}\n", pointer, numbers.at(0));
   }
 }

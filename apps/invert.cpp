@@ -37,13 +37,14 @@ int invert(const ResultsOptions& options) {
   const InversionDirectory directory(deck.output.directory);
   refuse_to_overwrite(options, directory);
   const Unknowns unknowns(deck);
+  directory.protect_inputs(deck, unknowns);
   std::vector<RecordedEvaluation> before;
   if (options.resume) before = directory.read(deck, unknowns);
   if (options.resume && before.empty()) spdlog::info("There is no inversion in '{}': it starts at the beginning.", directory.path());
   RunObjective objective(deck, unknowns.pointers(), stop_request(options.max_walltime));
   Inversion inversion(deck, unknowns, objective, directory, std::move(before));
   directory.prepare();
-  if (options.overwrite) directory.clear();
+  if (options.overwrite) directory.clear(deck, unknowns);
   spdlog::info("{}: {} unknowns, {} threads, results in '{}'", deck.title.empty() ? options.deck : deck.title, unknowns.size(),
                thread_count(), directory.path());
   if (inversion.run()) return static_cast<int>(ExitCode::done);

@@ -16,7 +16,7 @@ namespace {
 /// Numbers that enter the step or the initial fields at fixed seeding, by the pattern of their pointer.
 bool may_be_unknown(const std::string& pointer) {
   static const std::regex pattern(
-      "/gravity/[0-9]+|/method/flip_fraction|/parameters/[^/]+|/materials/[^/]+/[^/]+|/bodies/[0-9]+/velocity/[0-9]+(/mlp)?|"
+      "/gravity/[0-9]+|/method/flip_fraction|/parameters/[^/]+|/materials/[^/]+/[^/]+|/bodies/[0-9]+/velocity/([0-9]+(/mlp)?|particles)|"
       "/bodies/[0-9]+/initial_stress/k0|/walls/[^/]+/(coefficient|segments/[0-9]+/coefficient)|/obstacles/[0-9]+/coefficient");
   return std::regex_match(pointer, pattern);
 }
@@ -40,18 +40,22 @@ void check_target(const Json& deck, const std::string& pointer, const Place& pat
     path.problem(pointer +
                  " cannot be an unknown: it is fixed before the first step (seeding, grid, times, output); choose a number of the step or "
                  "of the initial fields");
-  else if (!value.is_number() && !is_network(pointer))
+  else if (!value.is_number() && !is_list(pointer))
     path.problem(pointer + " is " + described::shown(value) + ", not a number; give it one, or choose another");
 }
 
-/// A network's weights start from its seed and have no meaning one by one.
-void check_network(const Unknown& unknown, const std::vector<std::string>& pointers, const Place& place) {
-  if (std::none_of(pointers.begin(), pointers.end(), is_network)) return;
+/// A network's weights start from its seed and have no meaning one by one; velocities of particles start from their file.
+void check_list(const Unknown& unknown, const std::vector<std::string>& pointers, const Place& place) {
+  const bool network = std::any_of(pointers.begin(), pointers.end(), is_network);
+  if (!network && std::none_of(pointers.begin(), pointers.end(), is_particle_velocities)) return;
   if (!std::holds_alternative<std::monostate>(unknown.start))
-    place.problem("start", "has no effect on a network, whose weights start from its seed (or its key weights); remove it");
-  if (unknown.transform != Transform::none)
+    place.problem("start", network ? "has no effect on a network, whose weights start from its seed (or its key weights); remove it"
+                                   : "has no effect on velocities of particles, which start from those of their file; remove it");
+  if (network && unknown.transform != Transform::none)
     place.problem("transform", "makes no sense for a network, whose weights may have either sign; remove it");
-  if (unknown.share) place.problem("share", "is for numbers; networks have weights of their own: remove it");
+  if (unknown.share)
+    place.problem("share", network ? "is for numbers; networks have weights of their own: remove it"
+                                   : "is for numbers; particles have velocities of their own: remove it");
 }
 
 /// Where the optimiser begins when the unknown gives no start: the deck's own values.
@@ -76,7 +80,7 @@ void check_unknown(const Json& deck, const Unknown& unknown, const Place& place)
     place.problem("start", "must have one number for each of the " + std::to_string(pointers.size()) + " pointers, found " +
                                std::to_string(starts->size()));
   if (unknown.share && pointers.size() == 1) place.problem("share", "has no effect on a single number; remove it");
-  check_network(unknown, pointers, place);
+  check_list(unknown, pointers, place);
   check_own_values(deck, unknown, pointers, place);
 }
 
@@ -92,7 +96,15 @@ void check_twice(const Json& deck, const std::vector<Unknown>& unknowns, const P
 
 }  // namespace
 
-bool is_network(const std::string& pointer) { return pointer.size() > 4 && pointer.compare(pointer.size() - 4, 4, "/mlp") == 0; }
+bool is_network(const std::string& pointer) {
+  static const std::regex pattern("/bodies/[0-9]+/velocity/[0-9]+/mlp");
+  return std::regex_match(pointer, pattern);
+}
+
+bool is_particle_velocities(const std::string& pointer) {
+  static const std::regex pattern("/bodies/[0-9]+/velocity/particles");
+  return std::regex_match(pointer, pattern);
+}
 
 std::vector<std::string> pointers_of(const std::string& path, const Json& resolved) { return expand(resolved, path, {}); }
 

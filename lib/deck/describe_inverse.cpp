@@ -80,7 +80,7 @@ void check_start_value(const Unknown& u, double value, const std::string& what, 
 
 void describe(Description<Prior>& d) {
   d.is("prior", "Gaussian prior of an unknown.");
-  d.required("mean", &Prior::mean);
+  d.optional("mean", &Prior::mean).word("start").help("A number, or where the search starts, value by value.");
   d.required("deviation", &Prior::deviation).above(0).help("Standard deviation.");
 }
 

@@ -11,7 +11,8 @@ namespace jaxmpm::deck {
 
 enum class Transform { none, log, logit };
 struct Prior {
-  double mean = 0, deviation = 0;
+  std::optional<double> mean; /* empty: where the search starts */
+  double deviation = 0;
 };
 using Start = std::variant<std::monostate, double, Numbers>;  // nothing: the deck's value
 struct Unknown {
@@ -83,5 +84,9 @@ struct Inverse {
 Inverse inverse_of(const Deck& deck);
 /// Whether a pointer is that of a network, whose value is all its weights.
 bool is_network(const std::string& pointer);
+/// Whether a pointer is that of velocities from a file, whose value is those of all particles of the body.
+bool is_particle_velocities(const std::string& pointer);
+/// Whether the value at a pointer is many numbers, which are one unknown.
+inline bool is_list(const std::string& pointer) { return is_network(pointer) || is_particle_velocities(pointer); }
 
 }  // namespace jaxmpm::deck

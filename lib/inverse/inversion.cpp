@@ -119,7 +119,8 @@ void Inversion::tell_result() const {
   const Values values = unknowns_.values(best.u);
   for (const VariableBlock& block : unknowns_.blocks()) {
     if (block.count > 1) {
-      spdlog::info("  {}: {} weights", block.pointers.front(), block.count);
+      spdlog::info("  {}: {} {}", block.pointers.front(), block.count,
+                   deck::is_network(block.pointers.front()) ? "weights" : "velocities of particles");
       continue;
     }
     const std::string error = state_.standard_errors ? fmt::format(" ± {:.2g}", (*state_.standard_errors)[block.first]) : "";

@@ -8,7 +8,8 @@
 #include "inverse/evaluation_record.hpp"
 #include "io/checkpoint.hpp"
 #include "io/files.hpp"
-#include "scene/model.hpp"
+#include "scene/frame.hpp"
+#include "spdlog/fmt/fmt.h"
 
 namespace jaxmpm {
 namespace {
@@ -22,13 +23,26 @@ const Variables& best_variables(const InversionState& state) {
   return best != nullptr ? best->u : state.unknowns.space().start;
 }
 
-/// Numbers of a block as JSON: one, or a list for a network.
-Json shown(const std::vector<double>& numbers, bool is_network) { return is_network ? Json(numbers) : Json(numbers.at(0)); }
+/// Numbers at a pointer as JSON: one, or a list.
+Json shown(const std::string& pointer, const std::vector<double>& numbers) {
+  return deck::is_list(pointer) ? Json(numbers) : Json(numbers.at(0));
+}
+
+/// Name of the file of a body's velocities.
+std::string velocity_file(const deck::Body& body) { return "velocity_" + body.name + ".csv"; }
+
+/// Pointers of the velocities of particles among the unknowns.
+std::vector<std::string> particle_velocities(const Unknowns& unknowns) {
+  std::vector<std::string> found;
+  for (const std::string& pointer : unknowns.pointers())
+    if (deck::is_particle_velocities(pointer)) found.push_back(pointer);
+  return found;
+}
 
 Json iteration_json(const Unknowns& unknowns, const RecordedEvaluation& evaluation) {
   Json json{{"loss", evaluation.loss}, {"unknowns", Json::object()}};
   for (const auto& [pointer, numbers] : unknowns.values(evaluation.u))
-    if (!deck::is_network(pointer)) json["unknowns"][pointer] = numbers.at(0);
+    if (!deck::is_list(pointer)) json["unknowns"][pointer] = numbers.at(0);
   json["forward_seconds"] = evaluation.forward_seconds;
   json["gradient_seconds"] = evaluation.gradient_seconds;
   return json;
@@ -39,13 +53,13 @@ Json unknowns_json(const InversionState& state) {
   Json json = Json::object();
   for (const VariableBlock& block : state.unknowns.blocks())
     for (const std::string& pointer : block.pointers) {
-      const bool network = deck::is_network(pointer);
       Json& entry = json[pointer];
-      entry["value"] = shown(values.at(pointer), network);
+      if (deck::is_particle_velocities(pointer)) entry["value"]["file"] = velocity_file(state.deck.bodies[body_of(pointer)]);
+      else entry["value"] = shown(pointer, values.at(pointer));
       entry["standard_error"] = nullptr;
       if (!state.standard_errors) continue;
       const auto first = state.standard_errors->begin() + static_cast<std::ptrdiff_t>(block.first);
-      entry["standard_error"] = shown({first, first + static_cast<std::ptrdiff_t>(block.count)}, network);
+      entry["standard_error"] = shown(pointer, {first, first + static_cast<std::ptrdiff_t>(block.count)});
     }
   return json;
 }
@@ -72,7 +86,7 @@ void write_history(hdf5::Writer& file, const InversionState& state) {
     forward.push_back(one.forward_seconds);
     gradient.push_back(one.gradient_seconds);
     for (const auto& [pointer, values] : state.unknowns.values(one.u))
-      if (!deck::is_network(pointer)) numbers[pointer].push_back(values.at(0));
+      if (!deck::is_list(pointer)) numbers[pointer].push_back(values.at(0));
   }
   file.dataset("/history/loss", {loss.size()}, loss);
   file.dataset("/history/forward_seconds", {forward.size()}, forward);
@@ -83,8 +97,7 @@ void write_history(hdf5::Writer& file, const InversionState& state) {
 }
 
 /// The initial fields with the best values: what an unknown velocity field has become.
-void write_fields(hdf5::Writer& file, const InversionState& state) {
-  const Model model = build_model(with_values(state.deck, state.unknowns.values(best_variables(state))));
+void write_fields(hdf5::Writer& file, const Model& model) {
   const auto dim = static_cast<std::size_t>(model.dim);
   for (const Body& body : model.bodies) {
     const BodyState& initial = body.initial;
@@ -103,7 +116,18 @@ void write_fields(hdf5::Writer& file, const InversionState& state) {
   }
 }
 
-void write_h5(const std::string& path, const InversionState& state) {
+/// Velocities of a body as the deck's key velocity reads them from a file, to the bit.
+std::string velocity_table(const Body& body, int dim) {
+  std::string text = "# initial velocity of each particle of '" + body.name + "', m/s\nid,vx,vy" + (dim == 3 ? ",vz\n" : "\n");
+  for (std::size_t p = 0; p < body.initial.id.size(); ++p) {
+    text += std::to_string(body.initial.id[p]);
+    for (std::size_t d = 0; d < static_cast<std::size_t>(dim); ++d) text += fmt::format(",{}", body.initial.velocity[p][d]);
+    text += '\n';
+  }
+  return text;
+}
+
+void write_h5(const std::string& path, const InversionState& state, const Model& model) {
   hdf5::Writer file(path);
   file.attribute("/", "kind", std::string(kind));
   file.attribute("/", "format", inversion_format);
@@ -113,7 +137,7 @@ void write_h5(const std::string& path, const InversionState& state) {
   file.attribute("/", "stopped", state.stopped);
   file.text("/deck_resolved", state.deck.resolved);
   write_history(file, state);
-  write_fields(file, state);
+  write_fields(file, model);
   write_evaluations(file, state.loss.evaluations());
   file.finish();
 }
@@ -124,16 +148,37 @@ bool InversionDirectory::holds_inversion() const { return std::filesystem::exist
 
 void InversionDirectory::prepare() const { make_directory(path_); }
 
-void InversionDirectory::clear() const {
-  for (const std::string& file : {json(), h5()}) {
+void InversionDirectory::clear(const deck::Deck& deck, const Unknowns& unknowns) const {
+  std::vector<std::string> files{json(), h5()};
+  for (const std::string& pointer : particle_velocities(unknowns))
+    files.push_back(path_ + "/" + velocity_file(deck.bodies[body_of(pointer)]));
+  for (const std::string& file : files) {
     std::error_code failed;
     std::filesystem::remove(file, failed);
     if (failed) throw IoError("cannot remove '" + file + "': " + failed.message() + ".");
   }
 }
 
+void InversionDirectory::protect_inputs(const deck::Deck& deck, const Unknowns& unknowns) const {
+  for (const std::string& pointer : particle_velocities(unknowns)) {
+    const deck::Body& body = deck.bodies[body_of(pointer)];
+    const std::string input = make_frame(deck).file(std::get<deck::ParticleFile>(body.velocity).file);
+    std::error_code none;
+    if (std::filesystem::equivalent(input, path_ + "/" + velocity_file(body), none))
+      throw DeckError(pointer + "/file", "'" + input +
+                                             "' is where this inversion writes what it finds, and the search starts from it: copy it, "
+                                             "or choose another directory with -o");
+  }
+}
+
 void InversionDirectory::write(const InversionState& state) const {
-  write_h5(h5(), state);
+  const Values values = state.unknowns.values(best_variables(state));
+  const Model model = build_model(with_values(state.deck, values), values);
+  for (const std::string& pointer : particle_velocities(state.unknowns)) {
+    const std::size_t body = body_of(pointer);
+    write_file(path_ + "/" + velocity_file(state.deck.bodies[body]), velocity_table(model.bodies[body], model.dim));
+  }
+  write_h5(h5(), state, model);
   write_file(json(), json_text(state));
 }
 

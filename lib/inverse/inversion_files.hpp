@@ -1,5 +1,6 @@
 #pragma once
-// DIR/inversion.json and DIR/inversion.h5 (docs/results.md): what an inversion has found so far, and all that it needs to go on.
+// DIR/inversion.json, DIR/inversion.h5 and DIR/velocity_BODY.csv (docs/results.md): what an inversion has found so far, and all that it
+// needs to go on.
 #include <optional>
 #include <string>
 
@@ -25,8 +26,10 @@ class InversionDirectory {
   bool holds_inversion() const;
   /// Makes it and removes an inversion that is there. Throws IoError.
   void prepare() const;
-  void clear() const;
-  /// Writes both files, each whole or not at all, inversion.h5 first. Throws IoError.
+  void clear(const deck::Deck& deck, const Unknowns& unknowns) const;
+  /// Throws DeckError when a file that velocities start from is one that write() would replace.
+  void protect_inputs(const deck::Deck& deck, const Unknowns& unknowns) const;
+  /// Writes all files, each whole or not at all: velocities of particles, inversion.h5, inversion.json. Throws IoError.
   void write(const InversionState& state) const;
   /// Evaluations of the inversion that is there; none where there is no inversion. Throws IoError when it is damaged, DeckError when it is
   /// of another deck (what may differ: /output, /inverse/memory, and the optimiser's iterations and tolerance).

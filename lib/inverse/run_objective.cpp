@@ -40,7 +40,7 @@ RunObjective::RunObjective(const deck::Deck& deck, std::vector<std::string> poin
 }
 
 Evaluation RunObjective::loss(const Values& values) {
-  const Model model = build_model(with_values(deck_, values));
+  const Model model = build_model(with_values(deck_, values), values);
   const Watch watch;
   replay_run(model, steps_, *observer_, stop_);
   Evaluation found;
@@ -51,7 +51,7 @@ Evaluation RunObjective::loss(const Values& values) {
 
 Evaluation RunObjective::gradient(const Values& values) {
   const deck::Deck deck = with_values(deck_, values);
-  const Model model = build_model(deck);
+  const Model model = build_model(deck, values);
   const MemoryPlan plan = plan_gradient(model, steps_, memory_, pool_);
   tell_plan(plan);
   RunCost cost;
@@ -70,7 +70,7 @@ Evaluation RunObjective::gradient(const Values& values) {
 
 void RunObjective::renew_steps(const Values& values) {
   if (!steps_vary() && !steps_.dt.empty()) return;
-  const Model model = build_model(with_values(deck_, values));
+  const Model model = build_model(with_values(deck_, values), values);
   const std::size_t before = steps_.dt.size();
   steps_ = record_run(model, *observer_, stop_);
   if (before > 0) spdlog::info("Time steps renewed: {}, before {}.", steps_.dt.size(), before);

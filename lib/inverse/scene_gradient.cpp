@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.hpp"
+#include "deck/inverse.hpp"
 #include "materials/constants.hpp"
 #include "scene/initial_gradient.hpp"
 
@@ -72,8 +73,8 @@ class SceneGradient {
   std::vector<double> by_body(std::size_t body, const Parts& parts, const std::string& pointer) const {
     const deck::Body& wanted = deck_.bodies.at(body);
     const bool velocity = parts.at(2) == "velocity", by_file = std::holds_alternative<deck::ParticleFile>(wanted.velocity);
-    if (velocity && parts.size() == 3 && by_file) return initial_.by_particle_velocities(body);
-    if (velocity && parts.size() > 3 && !by_file) return by_component(body, parts, pointer);
+    if (deck::is_particle_velocities(pointer) && by_file) return initial_.by_particle_velocities(body);
+    if (velocity && parts.size() > 3 && parts[3] != "particles" && !by_file) return by_component(body, parts, pointer);
     if (parts.at(2) == "initial_stress" && parts.at(3) == "k0") return {initial_.by_weight(wanted.initial_stress.k0)};
     refuse(pointer);
   }

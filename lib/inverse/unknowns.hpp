@@ -7,13 +7,15 @@
 
 #include "deck/inverse.hpp"
 #include "inverse/search_space.hpp"
+#include "scene/model.hpp"
 
 namespace jaxmpm {
 
-/// Values by JSON pointer: a number has one, a network one for each of its weights (Mlp::weights()).
+/// Values by JSON pointer: a number has one, a network one for each of its weights (Mlp::weights()), the velocities of a body's particles
+/// (/bodies/B/velocity/particles) dim for each particle, in the order of ids.
 using Values = std::map<std::string, std::vector<double>>;
 
-/// Variables one after another that stand for one number (of all pointers that share it) or one network.
+/// Variables one after another that stand for one number (of all pointers that share it), one network or one body's velocities.
 struct VariableBlock {
   std::size_t unknown;                // index in /inverse/unknowns
   std::vector<std::string> pointers;  // that have these values
@@ -22,13 +24,14 @@ struct VariableBlock {
 
 class Unknowns {
  public:
-  /// Of a deck with /inverse, in its order. Throws DeckError when there is none.
+  /// Of a deck with /inverse, in its order. Throws DeckError when there is none, or velocities of a file are outside of their bounds;
+  /// IoError when that file cannot be read.
   explicit Unknowns(const deck::Deck& deck);
   const SearchSpace& space() const { return space_; }
   std::size_t size() const { return space_.size(); }
   const std::vector<VariableBlock>& blocks() const { return blocks_; }
   const std::vector<std::string>& pointers() const { return pointers_; }
-  /// What a variable is called in tables: its pointer, the path where several share it, with the number of the weight for a network.
+  /// What a variable is called in tables: its pointer, the path where several share it, with the number of the value for a list.
   std::string label(std::size_t variable) const;
 
   /// The deck's numbers.
@@ -51,6 +54,7 @@ class Unknowns {
     double lower, upper;  // of the number
     std::optional<deck::Prior> prior;
   };
+  double prior_residual(std::size_t variable, double u) const;
   void add_block(std::size_t index, std::vector<std::string> pointers, const Variables& start);
   const Law& law(std::size_t variable) const { return laws_[unknown_of_[variable]]; }
   double number(std::size_t variable, double u) const;
@@ -65,11 +69,17 @@ class Unknowns {
   SearchSpace space_;
 };
 
-/// What makes `--set` give a deck these values.
+/// What makes `--set` give a deck these values; velocities of particles, which a deck knows as a file only, are left out.
 std::vector<std::string> assignments(const Values& values);
 
 /// The deck with these values, read and checked anew, and without /inverse, which asks where a search starts and is done with. Throws
 /// DeckError for values that the deck does not allow.
 deck::Deck with_values(const deck::Deck& deck, const Values& values);
+
+/// The model of a deck that has these values (with_values), the velocities of particles among them.
+Model build_model(const deck::Deck& deck, const Values& values);
+
+/// Index of the body whose particles' velocities are at a pointer (deck::is_particle_velocities).
+std::size_t body_of(const std::string& pointer);
 
 }  // namespace jaxmpm

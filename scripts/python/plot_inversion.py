@@ -69,8 +69,8 @@ def relative_error(velocity, true):
 def compare_numbers(history, truth):
     """Prints each number beside the truth's."""
     for pointer, found in history["unknowns"].items():
-        true = number_at(truth.deck, pointer)
-        if true is not None and not isinstance(found["value"], list):
+        true = number_at(truth.deck, pointer) if isinstance(found["value"], (int, float)) else None
+        if true is not None:
             print(f"{pointer}: found {found['value']:.6g}, true {true:.6g}, difference {found['value'] - true:.2g}")
 
 

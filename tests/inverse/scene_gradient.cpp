@@ -180,7 +180,8 @@ TEST_CASE("weights of a network and velocities of particles, all at once") {
   }
 
   deck.bodies[0].velocity = deck::ParticleFile{"v.csv"};
-  const std::vector<double> by = gradient_by_pointer(deck, model, gradient, {"/bodies/0/velocity"}).at("/bodies/0/velocity");
+  const std::vector<double> by =
+      gradient_by_pointer(deck, model, gradient, {"/bodies/0/velocity/particles"}).at("/bodies/0/velocity/particles");
   REQUIRE(by.size() == 2 * model.bodies[0].initial.id.size());
   CHECK(by[2 * 5 + 1] == gradient.bodies[0].initial.velocity[5][1]);
 }
@@ -200,7 +201,7 @@ TEST_CASE("what has no derivative is refused by its pointer") {
     }
   };
   for (const char* pointer : {"/domain/cell_size", "/materials/water/friction_angle", "/materials/air/density", "/bodies/9/velocity/0",
-                              "/bodies/0/velocity/0", "/bodies/0/velocity", "/walls/x_max/coefficient", "/gravity"})
+                              "/bodies/0/velocity/0", "/bodies/0/velocity/particles", "/walls/x_max/coefficient", "/gravity"})
     refused(deck, pointer, pointer, "no number of the step");
   refused(deck, "/gravity/0", "/gravity/0", "along its axis only");
   refused(deck::with_assignments(deck, {"/materials/water/viscosity=0"}), "/materials/water/viscosity", "/materials/water/viscosity",
