@@ -8,7 +8,8 @@ namespace jaxmpm {
 namespace {
 
 constexpr double first_damping = 1e-3, least_damping = 1e-12, most_damping = 1e12, damping_factor = 10;
-constexpr double least_fall = 1e-12;  // of the loss in parts of itself, without a tolerance: rounding
+constexpr double longest_move = 0.25;  // of a variable in one iteration, in parts of the width of its bounds
+constexpr double least_fall = 1e-12;   // of the loss in parts of itself, without a tolerance: rounding
 
 /// (JᵀJ + λ diag JᵀJ) δ = −Jᵀr over the variables that no bound blocks (Marquardt 1963, Eq 22 with his scaling); zero elsewhere.
 std::optional<Variables> damped_step(const Linearisation& about, const Variables& u, const SearchSpace& space, double damping) {
@@ -52,9 +53,7 @@ class GaussNewton {
     for (; damping_ <= most_damping; damping_ *= damping_factor) {
       const auto step = damped_step(about, u, loss_.space(), damping_);
       if (!step) continue;
-      Variables next = u;
-      for (std::size_t i = 0; i < u.size(); ++i) next[i] += (*step)[i];
-      next = loss_.space().projected(next);
+      const Variables next = moved(u, *step);
       if (next == u) return false;
       try {
         reached_ = loss_.loss(next);
@@ -67,6 +66,18 @@ class GaussNewton {
       return true;
     }
     return false;
+  }
+
+  /// u + step within the bounds. What the data hardly speak of yet (the friction of a floor that the front has not reached) would jump from
+  /// bound to bound, and could end where it is never seen: hence longest_move.
+  Variables moved(const Variables& u, const Variables& step) const {
+    const SearchSpace& space = loss_.space();
+    Variables next = u;
+    for (std::size_t i = 0; i < u.size(); ++i) {
+      const double most = longest_move * (space.upper[i] - space.lower[i]);
+      next[i] += std::clamp(step[i], -most, most);
+    }
+    return space.projected(next);
   }
 
   const deck::GaussNewton& settings_;

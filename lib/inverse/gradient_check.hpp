@@ -14,13 +14,16 @@ struct DirectionCheck {
   double derivative = 0;          // g·d by the adjoint
   double difference = 0;          // of the loss along d, of second order: the nearest to g·d over the steps
   double dot_product = 0;         // ⟨J d, r⟩ with J d by differences of the residuals: what Jᵀr = g must give
+  double size = 0;                // of g·d if its parts were independent: what an error of it is relative to, at least
+  double scatter = 0;             // of the differences over the finest steps
   bool smooth = false;            // slope 2 ± 0.1, or remainders of rounding alone
 };
 
 struct VariableCheck {
   std::string label;
   double derivative = 0, difference = 0;  // by the variable; the difference nearest over three spacings
-  double error = 0;                       // relative, to what a change of scale in any variable would do at least
+  double error = 0;                       // relative, to a thousandth of what the most important variable does at least
+  double scatter = 0;                     // of the differences over the finest spacings, relative like the error
 };
 
 struct GradientCheck {
@@ -32,7 +35,7 @@ struct GradientCheck {
   std::string verdict;
 };
 
-/// At the start of the unknowns, priors included; takes some twelve forward runs for each direction and up to six for each variable.
+/// At the start of the unknowns, priors included; takes some sixteen forward runs for each direction and up to six for each variable.
 GradientCheck check_gradient(const Unknowns& unknowns, Objective& objective, std::size_t directions, std::uint64_t seed);
 
 }  // namespace jaxmpm

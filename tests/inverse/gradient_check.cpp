@@ -54,6 +54,27 @@ class BentObjective : public GravityObjective {
   std::vector<double> residuals_;
 };
 
+/// The gradient is right, but the loss has small jumps, as where particles reach new nodes at a free surface.
+class JumpyObjective : public GravityObjective {
+ public:
+  Evaluation loss(const Values& values) override {
+    Evaluation found = GravityObjective::loss(values);
+    residuals_ = GravityObjective::residuals();
+    residuals_.push_back(1 + 3e-8 * double(std::llround(values.at("/gravity/0")[0] / 3e-5) % 2));
+    return found;
+  }
+  Evaluation gradient(const Values& values) override {
+    Evaluation found = GravityObjective::gradient(values);
+    residuals_ = GravityObjective::residuals();
+    residuals_.push_back(1);
+    return found;
+  }
+  const std::vector<double>& residuals() const override { return residuals_; }
+
+ private:
+  std::vector<double> residuals_;
+};
+
 }  // namespace
 
 TEST_CASE("A right gradient has remainders of second order, and agrees with differences and dot products") {
@@ -69,7 +90,7 @@ TEST_CASE("A right gradient has remainders of second order, and agrees with diff
     CHECK(one.slope == Approx(2).margin(0.1));
     CHECK(one.difference == Approx(one.derivative).epsilon(1e-6));
     CHECK(one.dot_product == Approx(one.derivative).epsilon(1e-6));
-    CHECK(one.step.front() / one.step.back() == Approx(1e4));
+    CHECK(one.step.front() / one.step.back() == Approx(1e5));
   }
   REQUIRE(check.variables.size() == 2);
   CHECK(check.variables[0].label == "/gravity/0");
@@ -90,6 +111,16 @@ TEST_CASE("A gradient that is wrong by a thousandth or more is called so") {
     CHECK_FALSE(check.good);
     CHECK(check.verdict.find("BAD") == 0);
   }
+}
+
+TEST_CASE("Differences that scatter do not make a right gradient wrong") {
+  const InverseDeck own(two);
+  const Unknowns unknowns(own.deck);
+  JumpyObjective objective;
+  const GradientCheck check = check_gradient(unknowns, objective, 3, 1);
+  INFO(check.verdict);
+  CHECK(check.good);
+  CHECK(check.directions[0].scatter / check.directions[0].size > 1e-5);
 }
 
 TEST_CASE("At a bound the check looks inwards") {

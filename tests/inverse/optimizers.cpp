@@ -22,6 +22,15 @@ TEST_CASE("Gauss-Newton finds the end of Rosenbrock's valley in few steps") {
   CHECK(valley.evaluations <= 80);
 }
 
+TEST_CASE("Gauss-Newton does not jump to where the data say nothing") {
+  // x² is to be 0.09. Beyond 0.5 it can no more be seen: better than the start at 0.05, and level. The first step would lead to 0.92.
+  LeastSquares hidden(
+      {{0.05}, {0}, {1}, {1}}, [](const Variables& u) { return std::vector<double>{(u[0] < 0.5 ? u[0] * u[0] : 0.12) - 0.09}; },
+      [](const Variables& u) { return std::vector<std::vector<double>>{{u[0] < 0.5 ? 2 * u[0] : 0}}; });
+  minimise(deck::GaussNewton{30, {}}, hidden);
+  CHECK(hidden.best[0] == Approx(0.3));
+}
+
 TEST_CASE("Adam comes down a bowl and stops within its tolerance of what cannot be explained") {
   LeastSquares bowl(
       {{3, -2}, {-inf, -inf}, {inf, inf}, {1, 1}},
