@@ -28,12 +28,16 @@ enum class Transfer { pic, flip, apic, tpic };
 enum class Basis { linear, quadratic, cubic };
 enum class GradientForm { spline, mls };
 enum class Precision { f32, f64 };
+struct Rest {
+  double speed = 0, time = 0;
+};
 struct Method {
   Transfer transfer = Transfer::apic;
   double flip_fraction = 0.99;
   Basis basis = Basis::quadratic;
   GradientForm gradient = GradientForm::spline;
   Precision precision = Precision::f64;
+  std::optional<Rest> rest;
 };
 
 struct Newtonian {

@@ -81,6 +81,23 @@ void describe(Description<Time>& d) {
   });
 }
 
+void describe(Description<Rest>& d) {
+  d.is("rest",
+       "Material that has come to rest is left out of the step until something moves beside it: a block of the grid (8 cells along each "
+       "axis "
+       "in 2D, 4 in 3D) rests once its material and that of the blocks around it has kept below `speed` for `time` (docs/theory.md, "
+       "\"Material at rest\").");
+  d.required("speed", &Rest::speed)
+      .unit("m/s")
+      .above(0)
+      .help(
+          "Along every axis. What creeps slower than this may be stopped: choose a speed that crosses well below a cell in the time left.");
+  d.required("time", &Rest::time)
+      .unit("s")
+      .above(0)
+      .help("How long a block has to be slow: longer than material that turns round, or starts to fall, is.");
+}
+
 void describe(Description<Method>& d) {
   d.is("method", "How particles and grid exchange momentum, and in which precision.");
   d.optional("transfer", &Method::transfer).help("Particle-in-cell, fluid-implicit-particle, affine or Taylor particle-in-cell.");
@@ -94,6 +111,9 @@ void describe(Description<Method>& d) {
   d.optional("gradient", &Method::gradient)
       .help("Velocity gradient and internal force from the spline's gradient, or by moving least squares.");
   d.optional("precision", &Method::precision).help("Of particle and grid fields; positions are double always.");
+  d.optional("rest", &Method::rest)
+      .otherwise("none: every particle moves at every step")
+      .help("Only with --backend cpu, and not in gradients.");
   d.check({"basis", "gradient"}, [](const Method& method, const described::Place& place) {
     if (method.basis == Basis::linear && method.gradient == GradientForm::mls)
       place.problem("gradient", "\"mls\" is singular with the linear basis; use \"spline\", or basis \"quadratic\" or \"cubic\"");

@@ -15,6 +15,7 @@ described::EnumNames<ContactKind> names_of(ContactKind);
 
 void describe(Description<Domain>& d);
 void describe(Description<Time>& d);
+void describe(Description<Rest>& d);
 void describe(Description<Method>& d);
 void describe(Description<Newtonian>& d);
 void describe(Description<DruckerPrager>& d);

@@ -25,6 +25,7 @@ nlohmann::ordered_json cost_summary(const Model& model, const Solver& solver, Ba
   json["dimension"] = model.dim;
   json["bytes_per_particle"] = solver.bytes_per_particle();
   json["active_blocks"] = solver.active_blocks();
+  if (model.method.rest) json["particles_at_rest"] = solver.particles_at_rest();
   json["peak_memory_bytes"] = peak_memory_bytes();
   json["seconds_by_phase"] = {{"sort", phases.sort}, {"p2g", phases.p2g}, {"grid", phases.grid}, {"g2p", phases.g2p}};
   json["version"] = provenance().version;

@@ -1,5 +1,6 @@
 #include "solvers/explicit_step.hpp"
 
+#include <algorithm>
 #include <chrono>
 
 #include "core/error.hpp"
@@ -39,7 +40,9 @@ ExplicitStep<T, Dim>::ExplicitStep(const Model& model)
                            [&](auto nodes) { return step_kernels<T, Dim, nodes>(model.method.transfer, model.method.gradient); })),
       bodies_(model.bodies.size()),
       extent_(kernels_.block_extent(model.cells)),
-      grid_(model_, kernels_) {
+      grid_(model_, kernels_),
+      rest_(model.method.rest),
+      supports_(kernels_.arena_size) {
   for (int d = 0; d < Dim; ++d) domain_.cells[std::size_t(d)] = model.cells[std::size_t(d)];
   constants_ = {T(0), T(model.cell_size), T(model.method.flip_fraction)};
   grid_.record_contact(model.account_energy);
@@ -69,6 +72,26 @@ void ExplicitStep<T, Dim>::rebuild_blocks() {
   arenas_.resize(blocks_.tiles.size() * kernels_.arena_size);
   reports_.resize(blocks_.tiles.size());
   grid_.rebuild(blocks_);
+  rest_.rebuild(blocks_, tile_key_);
+  if (!rest_.possible()) return;
+  supports_.rebuild(blocks_.tiles.size());
+  choose_work();
+}
+
+template <class T, int Dim>
+void ExplicitStep<T, Dim>::choose_work() {
+  rest_.select(blocks_);
+  parallel_for_host("jaxmpm::stop", rest_.stopped().size(), [&](std::size_t k) { stop(blocks_.tiles[rest_.stopped()[k]]); });
+  grid_.select(blocks_, rest_.awake_blocks(), record_forces_);
+  supports_.select(blocks_, grid_.summed(), [&](std::size_t t) { return rest_.rests(t); });
+}
+
+/// Takes all motion from the particles of a tile.
+template <class T, int Dim>
+void ExplicitStep<T, Dim>::stop(const Tile& tile) {
+  Particles<T, Dim>& p = bodies_[tile.body];
+  for (auto* rates : {&p.velocity, &p.affine, &p.gradient})
+    for (Array<T>& component : *rates) std::fill(component.begin() + tile.begin, component.begin() + tile.end, T(0));
 }
 
 template <class T, int Dim>
@@ -81,11 +104,21 @@ Index<Dim> ExplicitStep<T, Dim>::arena_origin(const Tile& tile) const {
 template <class T, int Dim>
 void ExplicitStep<T, Dim>::p2g() {
   const Stopwatch time(seconds_.p2g);
-  parallel_for_host("jaxmpm::p2g", blocks_.tiles.size(), [&](std::size_t t) {
-    const Tile& tile = blocks_.tiles[t];
-    kernels_.p2g(bodies_[tile.body], tile.begin, tile.end, *materials_[tile.body], constants_, arena_origin(tile),
-                 arenas_.data() + t * kernels_.arena_size);
+  const std::vector<std::uint32_t>&moving = rest_.moving(), &supports = supports_.tiles();
+  const auto arena = [&](std::size_t t) { return arenas_.data() + t * kernels_.arena_size; };
+  parallel_for_host("jaxmpm::p2g", moving.size(), [&](std::size_t k) { scatter(moving[k], constants_, arena(moving[k])); });
+  if (supports.empty()) return;
+  const StepConstants<T> unit{T(1), constants_.cell_size, constants_.flip_fraction};
+  parallel_for_host("jaxmpm::supports", supports.size(), [&](std::size_t k) {
+    const std::size_t t = supports[k];
+    supports_.fill(t, constants_.dt, arena(t), [&](T* out) { scatter(t, unit, out); });
   });
+}
+
+template <class T, int Dim>
+void ExplicitStep<T, Dim>::scatter(std::size_t t, const StepConstants<T>& constants, T* arena) const {
+  const Tile& tile = blocks_.tiles[t];
+  kernels_.p2g(bodies_[tile.body], tile.begin, tile.end, *materials_[tile.body], constants, arena_origin(tile), arena);
 }
 
 template <class T, int Dim>
@@ -97,7 +130,9 @@ void ExplicitStep<T, Dim>::update_grid(double dt) {
 template <class T, int Dim>
 void ExplicitStep<T, Dim>::g2p() {
   const Stopwatch time(seconds_.g2p);
-  parallel_for_host("jaxmpm::g2p", blocks_.tiles.size(), [&](std::size_t t) {
+  const std::vector<std::uint32_t>& moving = rest_.moving();
+  parallel_for_host("jaxmpm::g2p", moving.size(), [&](std::size_t k) {
+    const std::uint32_t t = moving[k];
     const Tile& tile = blocks_.tiles[t];
     reports_[t] = kernels_.g2p(bodies_[tile.body], tile, blocks_, grid_.grid(), *materials_[tile.body], constants_, model_.account_energy,
                                arena_origin(tile), domain_);
@@ -109,8 +144,9 @@ template <class T, int Dim>
 void ExplicitStep<T, Dim>::collect(double dt) {
   double moved = 0;
   bool sound = true;
-  numbers_.fastest = 0, numbers_.last_dt = dt;
-  for (const TileReport& r : reports_) {
+  numbers_.fastest = rest_.fastest(), numbers_.last_dt = dt;
+  for (const std::uint32_t t : rest_.moving()) {
+    const TileReport& r = reports_[t];
     numbers_.fastest = std::max(numbers_.fastest, r.fastest), moved = std::max(moved, r.displacement);
     numbers_.dissipation.plastic += r.plastic, numbers_.dissipation.viscous += r.viscous;
     sound = sound && r.sound;
@@ -118,11 +154,12 @@ void ExplicitStep<T, Dim>::collect(double dt) {
   if (!sound) report_failure();
   numbers_.drift += moved;
   if (model_.account_energy) numbers_.dissipation.friction += grid_.contact().friction;
+  if (rest_.possible() && rest_.learn(reports_, dt, model_.cell_size)) choose_work();
 }
 
 template <class T, int Dim>
 void ExplicitStep<T, Dim>::report_failure() const {
-  for (std::size_t t = 0; t < reports_.size(); ++t) {
+  for (const std::uint32_t t : rest_.moving()) {
     if (reports_[t].sound) continue;
     const Tile& tile = blocks_.tiles[t];
     check_particles<T, Dim>(model_, model_.bodies[tile.body], bodies_[tile.body], tile.begin, tile.end);
@@ -153,6 +190,7 @@ template <class T, int Dim>
 void ExplicitStep<T, Dim>::record_forces(bool on) {
   record_forces_ = on;
   grid_.record_contact(on || model_.account_energy);
+  if (rest_.possible()) choose_work();
 }
 
 template <class T, int Dim>
@@ -178,12 +216,15 @@ std::vector<BodySnapshot> ExplicitStep<T, Dim>::snapshot(const FieldSelection& f
 
 template <class T, int Dim>
 std::vector<RawArray> ExplicitStep<T, Dim>::save() const {
-  return save_state<T, Dim>(bodies_, blocks_.tiles, tile_key_, numbers_);
+  std::vector<RawArray> arrays = save_state<T, Dim>(bodies_, blocks_.tiles, tile_key_, numbers_);
+  if (rest_.possible()) arrays.push_back(rest_.save());
+  return arrays;
 }
 
 template <class T, int Dim>
 void ExplicitStep<T, Dim>::restore(const std::vector<RawArray>& arrays) {
   restore_state<T, Dim>(arrays, bodies_, blocks_.tiles, tile_key_, numbers_);
+  if (rest_.possible()) rest_.restore(arrays, blocks_.tiles, tile_key_);
   rebuild_blocks();
 }
 

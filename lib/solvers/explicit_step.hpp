@@ -3,6 +3,8 @@
 #include "kernels/g2p.hpp"
 #include "solvers/grid_update.hpp"
 #include "solvers/particle_state.hpp"
+#include "solvers/resting_blocks.hpp"
+#include "solvers/support_arenas.hpp"
 
 namespace jaxmpm {
 
@@ -24,6 +26,7 @@ class ExplicitStep : public Solver {
   double bytes_per_particle() const override;
   PhaseSeconds phase_seconds() const override { return seconds_; }
   std::size_t active_blocks() const override { return blocks_.count(); }
+  std::uint64_t particles_at_rest() const override { return rest_.particles(); }
 
  protected:
   /// Particles may move this far, in cells, before they are sorted again: far enough to be rare, near enough that most still share a
@@ -34,7 +37,11 @@ class ExplicitStep : public Solver {
   /// `orders` (may be null) receives per body where each particle was before.
   void sort(std::vector<std::vector<std::uint32_t>>* orders = nullptr);
   void rebuild_blocks();
+  /// Who rests, and what is left to do.
+  void choose_work();
+  void stop(const Tile& tile);
   void p2g();
+  void scatter(std::size_t t, const StepConstants<T>& constants, T* arena) const;
   void update_grid(double dt);
   void g2p();
   void collect(double dt);
@@ -55,6 +62,8 @@ class ExplicitStep : public Solver {
   GridUpdate<T, Dim> grid_;
   StepConstants<T> constants_;
   std::vector<TileReport> reports_;
+  RestingBlocks<Dim> rest_;
+  SupportArenas<T, Dim> supports_;
 
   StepNumbers numbers_;
   std::uint64_t sorts_ = 0;  // by this object

@@ -1,6 +1,7 @@
 #include "solvers/grid_update.hpp"
 
 #include <cstring>
+#include <numeric>
 
 #include "core/parallel_host.hpp"
 
@@ -27,6 +28,33 @@ void GridUpdate<T, Dim>::rebuild(const Blocks<Dim>& blocks) {
   contact_blocks_.rebuild(blocks);
   grid_.resize(blocks.count() * kernels_.own_size), raw_.resize(contact_blocks_.wall_blocks().size() * kernels_.own_size);
   contact_.resize(blocks.count());
+  summed_.resize(blocks.count()), at_walls_ = contact_blocks_.wall_blocks();
+  std::iota(summed_.begin(), summed_.end(), 0u);
+  near_awake_.assign(blocks.count(), 1);
+}
+
+template <class T, int Dim>
+void GridUpdate<T, Dim>::select(const Blocks<Dim>& blocks, const std::vector<char>& awake, bool forces) {
+  const auto mark_around = [&](std::size_t b, std::vector<char>& mark, const auto& which) {
+    for (std::size_t m = 0; m < around; ++m) {
+      const int other = blocks.neighbour[b * around + m];
+      if (other >= 0 && which(std::size_t(other))) mark[std::size_t(other)] = 1;
+    }
+  };
+  near_awake_.assign(blocks.count(), 0);
+  for (std::size_t b = 0; b < blocks.count(); ++b)
+    if (awake[b]) mark_around(b, near_awake_, [](std::size_t) { return true; });
+  std::vector<char> summed = near_awake_;
+  if (forces)
+    for (std::size_t b = 0; b < blocks.count(); ++b) summed[b] = summed[b] || touches(b);
+  at_walls_.clear();
+  for (const std::uint32_t b : contact_blocks_.wall_blocks())
+    if (summed[b]) at_walls_.push_back(b);
+  for (const std::uint32_t b : at_walls_)  // where its images are
+    mark_around(b, summed, [&](std::size_t other) { return contact_blocks_.wall_slot()[other] >= 0; });
+  summed_.clear();
+  for (std::size_t b = 0; b < blocks.count(); ++b)
+    if (summed[b]) summed_.push_back(std::uint32_t(b));
 }
 
 template <class T, int Dim>
@@ -50,9 +78,8 @@ template <class T, int Dim>
 void GridUpdate<T, Dim>::update(const Blocks<Dim>& blocks, const T* arenas, double dt) {
   const GridConstants<T, Dim> constants = this->constants(dt);
   if (keep_sums_) sums_.resize(blocks.count() * kernels_.own_size);
-  const std::vector<std::uint32_t>& wall_blocks = contact_blocks_.wall_blocks();
-  parallel_for_host("jaxmpm::grid", blocks.count(), [&](std::size_t b) { update_block(blocks, b, arenas, constants); });
-  parallel_for_host("jaxmpm::walls", wall_blocks.size(), [&](std::size_t w) { update_wall_block(blocks, wall_blocks[w], constants); });
+  parallel_for_host("jaxmpm::grid", summed_.size(), [&](std::size_t k) { update_block(blocks, summed_[k], arenas, constants); });
+  parallel_for_host("jaxmpm::walls", at_walls_.size(), [&](std::size_t w) { update_wall_block(blocks, at_walls_[w], constants); });
 }
 
 template <class T, int Dim>
@@ -127,10 +154,11 @@ template <class T, int Dim>
 BlockContact GridUpdate<T, Dim>::contact() const {
   BlockContact total;
   total.obstacle.resize(model_.obstacles.size());
-  for (const BlockContact& block : contact_) {
+  for (const std::uint32_t b : summed_) {
+    const BlockContact& block = contact_[b];
     for (std::size_t f = 0; f < 6; ++f) add<Point, 3>(total.face[f], block.face[f]);
     for (std::size_t o = 0; o < block.obstacle.size(); ++o) add<Point, 3>(total.obstacle[o], block.obstacle[o]);
-    total.friction += block.friction;
+    if (near_awake_[b]) total.friction += block.friction;
   }
   return total;
 }

@@ -19,9 +19,14 @@ class GridUpdate {
  public:
   GridUpdate(const Model& model, const StepKernels<T, Dim>& kernels);
 
-  /// Learns the blocks of a new sort: which lie at walls, which nodes are inside obstacles.
+  /// Learns the blocks of a new sort: which lie at walls, which nodes are inside obstacles. All of them are updated.
   void rebuild(const Blocks<Dim>& blocks);
-  /// Sums the arenas and turns them into velocities: afterwards grid() holds {–, v} (and FLIP's {–, Δv}) of every active block.
+  /// From now on updates only the blocks around those that are `awake` ([block]) and, where contact `forces` are wanted, all that touch
+  /// walls or obstacles.
+  void select(const Blocks<Dim>& blocks, const std::vector<char>& awake, bool forces);
+  /// The blocks whose arenas update() adds up, ascending.
+  const std::vector<std::uint32_t>& summed() const { return summed_; }
+  /// Sums the arenas and turns them into velocities: afterwards grid() holds {–, v} (and FLIP's {–, Δv}) of every block that is updated.
   void update(const Blocks<Dim>& blocks, const T* arenas, double dt);
   const T* grid() const { return grid_.data(); }
 
@@ -38,7 +43,7 @@ class GridUpdate {
   GridConstants<T, Dim> constants(double dt) const;
   const ContactBlocks<T, Dim>& contact_blocks() const { return contact_blocks_; }
   const Walls<T, Dim>& walls() const { return walls_; }
-  /// Totals of the last update, added up in the order of blocks.
+  /// Totals of the last update, added up in the order of blocks; nothing rubs where all is at rest.
   BlockContact contact() const;
   std::size_t bytes() const { return (grid_.capacity() + raw_.capacity()) * sizeof(T); }
 
@@ -50,6 +55,7 @@ class GridUpdate {
   void update_wall_block(const Blocks<Dim>& blocks, std::size_t b, const GridConstants<T, Dim>& constants);
   void apply_obstacles(const Blocks<Dim>& blocks, std::size_t b);
   void record(std::size_t b, std::uint32_t obstacle, const ObstacleContact<T, Dim>& done);
+  bool touches(std::size_t b) const { return contact_blocks_.wall_slot()[b] >= 0 || contact_blocks_.obstacles(b); }
 
   const Model& model_;
   StepKernels<T, Dim> kernels_;
@@ -59,7 +65,9 @@ class GridUpdate {
   Array<T> grid_, raw_, sums_;  // [block][own], [wall block][own], [block][own] where kept
   bool keep_sums_ = false;
   bool recording_ = false;
-  std::vector<BlockContact> contact_;  // [block]
+  std::vector<std::uint32_t> summed_, at_walls_;  // blocks whose arenas are added up, and those whose wall nodes are updated
+  std::vector<char> near_awake_;                  // [block] it, or one around it, is awake
+  std::vector<BlockContact> contact_;             // [block]
 };
 
 }  // namespace jaxmpm

@@ -35,6 +35,8 @@ bool has_backend(Backend backend) { return backend == Backend::cpu; }
 
 std::unique_ptr<Solver> make_solver(const Model& model, Backend backend) {
   check_extent(model);
+  if (backend == Backend::cuda && model.method.rest)
+    throw DeckError("/method/rest", "a GPU moves every particle at every step; give --backend cpu, or remove it");
   if (!has_backend(backend))
     throw Error(ExitCode::deck, "this program was built without CUDA; use --backend cpu, or build with scripts/build-cuda");
 #if defined(KOKKOS_ENABLE_CUDA)
@@ -45,6 +47,8 @@ std::unique_ptr<Solver> make_solver(const Model& model, Backend backend) {
 
 std::unique_ptr<ReversibleSolver> make_reversible_solver(const Model& model) {
   check_extent(model);
+  if (model.method.rest)
+    throw DeckError("/method/rest", "a gradient follows every particle through every step; remove it to compute gradients");
   if (model.method.precision != deck::Precision::f64)
     throw DeckError("/method/precision", "gradients are computed in double precision; set it to \"f64\"");
   if (model.dim == 2) return std::make_unique<ReversibleStep<double, 2>>(model);

@@ -63,6 +63,29 @@ class Results(ProgramTest):
         self.expect(DONE, "run", deck, "-o", "two", "--threads", "2")
         self.assertSameResults("one", "two")
 
+    def test_material_at_rest_is_left_out_the_same_with_any_threads_and_after_a_stop(self):
+        deck = self.write(small_deck(**{
+            "domain": {"min": [0, 0], "max": [2.0, 0.4], "cell_size": 0.0125}, "time": {"end": 1.2},
+            "materials": {"sand": {"model": "drucker_prager", "density": 2000, "bulk_modulus": 2e5, "poisson_ratio": 0.3, "friction_angle": 30}},
+            "bodies": [{"name": "sand", "material": "sand", "shape": {"box": {"min": [0, 0], "max": [0.3, 0.3]}}, "initial_stress": {"k0": 0.5}}],
+            "walls": {"y_min": {"kind": "no_slip"}}, "obstacles": [], "gauges": {}, "output": {"interval": 0.2, "formats": ["hdf5"]},
+        }))
+        rest = ("--set", '/method/rest={"speed": 0.02, "time": 0.02}')
+        self.run_deck(deck, "plain")
+        for out, threads in (("one", "1"), ("two", "2")):
+            self.expect(DONE, "run", deck, "-o", out, "--threads", threads, *rest)
+        self.assertSameResults("one", "two")
+        self.run_deck(deck, "resumed", *rest, "--set", "/time/end=0.6")
+        self.run_deck(deck, "resumed", *rest, "--resume", "auto")
+        self.assertSameResults("one", "resumed")
+        summary = json.loads((self.scratch / "one" / "run.json").read_text())
+        self.assertGreater(summary["particles_at_rest"], 0.5 * summary["particles"])
+        end = {}
+        for out in ("plain", "one"):
+            with h5py.File(self.scratch / out / "frames" / "000006.h5") as file:
+                end[out] = file["sand/position"][...]
+        self.assertLess(np.sqrt(np.mean((end["plain"] - end["one"]) ** 2)), 0.2 * 0.0125)
+
     def test_output_changes_nothing(self):
         self.run_deck(self.write(small_deck()), "much", "--set", "/output/interval=0.001", "--set", "/output/checkpoint_interval_minutes=0.0001")
         bare = small_deck(gauges={}, output={"interval": 10, "formats": ["hdf5"]})
