@@ -151,3 +151,29 @@ TEST_CASE("What the deck does not allow ends the search with advice; too many un
                             R"([ { "mlp": { "inputs": ["y"], "hidden": [10, 10] } }, 0 ])");
   CHECK_THROWS_WITH(invert(network, InversionDirectory(network.folder() + "/out"), objective), Catch::Contains("141"));
 }
+
+TEST_CASE("Velocities that were found are a file from which a search may start, but not that of its own directory") {
+  const InverseDeck own(R"("unknowns": [ { "path": "/bodies/0/velocity/particles" } ], "optimizer": { "method": "adam", "iterations": 3 })",
+                        R"({ "particles": { "file": "v.csv" } })");
+  std::string table = "id,vx,vy\n";
+  for (int id = 0; id < 60; ++id) table += std::to_string(id) + ",0.1,0\n";
+  std::ofstream(own.folder() + "/v.csv") << table;
+  class Parabola : public GravityObjective {
+   public:
+    Evaluation gradient(const Values& values) override {
+      return {0, {{"/bodies/0/velocity/particles", values.at("/bodies/0/velocity/particles")}}};
+    }
+  } objective;
+  const InversionDirectory directory(own.folder() + "/out");
+  CHECK(invert(own, directory, objective));
+  const nlohmann::json json = result(directory);
+  CHECK(json["unknowns"]["/bodies/0/velocity/particles"]["value"]["file"] == "velocity_pool.csv");
+  CHECK(json["unknowns"]["/bodies/0/velocity/particles"]["standard_error"].is_null());
+  CHECK(json["iterations"][0]["unknowns"].empty());
+  const deck::Deck again = deck::with_assignments(own.deck, {"/bodies/0/velocity/particles/file=out/velocity_pool.csv"});
+  CHECK(hdf5::Reader(directory.h5()).numbers("/unknowns/bodies/0/velocity/particles/value") == Unknowns(again).space().start);
+  CHECK_THROWS_WITH(directory.protect_inputs(again, Unknowns(again)), Catch::Contains("choose another directory"));
+  directory.protect_inputs(own.deck, Unknowns(own.deck));
+  directory.clear(own.deck, Unknowns(own.deck));
+  CHECK_FALSE(std::filesystem::exists(own.folder() + "/out/velocity_pool.csv"));
+}

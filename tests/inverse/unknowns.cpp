@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <memory>
 
 #include "fake_objective.hpp"
 
@@ -95,4 +96,45 @@ TEST_CASE("A network is a block of its weights, which the deck takes") {
   const auto& components = std::get<std::vector<deck::Component>>(changed.bodies[0].velocity);
   CHECK(std::get<deck::Mlp>(components[0]).weights == Variables(u.begin() + 1, u.end()));
   CHECK(Unknowns(changed).space().start == u);  // and starts from them where it has them
+}
+
+TEST_CASE("Velocities of particles from a file are one block: bounds, transform and prior hold for each, and the model takes them") {
+  const std::string pointer = "/bodies/0/velocity/particles";
+  const auto deck_of = [](const std::string& unknown) {
+    return std::make_unique<InverseDeck>(R"("unknowns": [ { "path": "/bodies/*/velocity/particles")" + unknown + " } ]",
+                                         R"({ "particles": { "file": "v.csv" } })");
+  };
+  const auto own = deck_of(R"(, "prior": { "deviation": 0.5 })");
+  CHECK_THROWS_AS(Unknowns(own->deck), IoError);  // there is no file yet
+  std::string table = "id,vx,vy\n";
+  for (int id = 59; id >= 0; --id) table += std::to_string(id) + "," + std::to_string(id) + ",-3\n";  // in any order
+  std::ofstream(own->folder() + "/v.csv") << table;
+  const Unknowns unknowns(own->deck);
+  REQUIRE(unknowns.size() == 120);
+  CHECK(unknowns.label(14) == pointer + "[14]");
+  Variables u = unknowns.space().start;
+  CHECK(u[14] == 7);
+  CHECK(u[15] == -3);
+  double square = 0;
+  for (const double v : u) square += v * v;
+  CHECK(unknowns.space().scale[14] == Approx(std::sqrt(square / 120)));
+
+  // A prior without a mean holds each value near its own start.
+  CHECK(unknowns.prior_residuals(u) == Variables(120, 0.0));
+  u[14] = 9;
+  CHECK(unknowns.prior_residuals(u)[14] == 4);
+  Variables gradient(120, 0.0);
+  unknowns.add_prior_gradient(u, gradient);
+  CHECK(gradient[14] == 8);
+  CHECK(gradient[15] == 0);
+
+  const Values values = unknowns.values(u);
+  CHECK(assignments(values).empty());
+  const deck::Deck plain = with_values(own->deck, values);
+  CHECK(build_model(plain).bodies[0].initial.velocity[7] == Point{7, -3, 0});
+  CHECK(build_model(plain, values).bodies[0].initial.velocity[7] == Point{9, -3, 0});
+
+  const auto bounded = deck_of(R"(, "bounds": [-2, 60], "transform": "logit")");
+  std::ofstream(bounded->folder() + "/v.csv") << table;
+  CHECK_THROWS_WITH(Unknowns(bounded->deck), Catch::Contains("/inverse/unknowns/0/start") && Catch::Contains("velocity of particle 0: -3"));
 }
