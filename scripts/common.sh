@@ -54,3 +54,18 @@ install() {
   as_root env DEBIAN_FRONTEND=noninteractive apt-get -qq -y --no-install-recommends -o Dpkg::Options::=--force-unsafe-io install "${missing[@]}"
 }
 set -o pipefail
+
+# build_yardsticks: compiles scripts/yardstick into $deps/yardstick; fails where the processor lacks the AVX-512 that they are written for.
+build_yardsticks() {
+  local name
+  mkdir -p "$deps/yardstick"
+  compile_yardstick limits
+  grep -q avx512dq /proc/cpuinfo || return 1
+  for name in transfer2d transfer3d; do compile_yardstick "$name" -ffast-math; done
+}
+
+compile_yardstick() {
+  local name=$1
+  shift
+  part "Build $name" g++ -O3 -march=native -fopenmp "$@" "$root/scripts/yardstick/$name.cpp" -o "$deps/yardstick/$name"
+}

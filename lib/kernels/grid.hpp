@@ -2,32 +2,50 @@
 // The grid between the transfers (Eqs 13–14): sums of the arenas, division, gravity, walls and obstacles; and the copy of the result to a
 // tile's arena.
 #include <cstring>
+#include <type_traits>
 
 #include "contact/obstacles.hpp"
 #include "contact/walls.hpp"
+#include "core/pack.hpp"
 #include "kernels/scheme.hpp"
 
 namespace jaxmpm {
 
-/// Calls f(m, a, b, c) for the neighbours m of a block at distances a, b, c ∈ {−1, 0, 1} (c = 0 in 2D).
+/// Distances a, b, c ∈ {−1, 0, 1} of neighbour m of a block (c = 0 in 2D).
 template <int Dim>
 struct NeighbourOffset {
   int a, b, c;
-  explicit JAXMPM_INLINE NeighbourOffset(int m)
+  explicit constexpr NeighbourOffset(int m)
       : a(Dim == 2 ? m / 3 - 1 : m / 9 - 1), b(Dim == 2 ? m % 3 - 1 : m / 3 % 3 - 1), c(Dim == 2 ? 0 : m % 3 - 1) {}
 };
 
-/// Rows (runs along the last axis) that the arena of a neighbour shares with a block: f(own node, arena node, count).
-template <class Shape, int Dim, int S, class F>
-JAXMPM_INLINE void for_each_shared_row(int a, int b, int c, F f) {
-  const Overlap x = overlap<Shape::B, S>(a), y = overlap<Shape::B, S>(b), z = overlap<Shape::B, S>(c);
+/// Rows (runs along the last axis) that the arena of neighbour M shares with a block: f(own node, arena node, count). The neighbour is a
+/// compile-time number, so that a row is a few vectors and not a loop; `count` is an integral constant.
+template <class Shape, int Dim, int S, int M, class F>
+JAXMPM_INLINE void for_each_shared_row(F f) {
+  constexpr NeighbourOffset<Dim> n(M);
+  constexpr Overlap x = overlap<Shape::B, S>(n.a), y = overlap<Shape::B, S>(n.b), z = overlap<Shape::B, S>(n.c);
   if constexpr (Dim == 2) {
-    for (int i = 0; i < x.count; ++i) f(Shape::own_node(x.from + i, y.from, 0), Shape::arena_node(x.in_arena + i, y.in_arena, 0), y.count);
+    constexpr std::integral_constant<int, y.count> count;
+    for (int i = 0; i < x.count; ++i) f(Shape::own_node(x.from + i, y.from, 0), Shape::arena_node(x.in_arena + i, y.in_arena, 0), count);
   } else {
+    constexpr std::integral_constant<int, z.count> count;
     for (int i = 0; i < x.count; ++i)
       for (int j = 0; j < y.count; ++j)
-        f(Shape::own_node(x.from + i, y.from + j, z.from), Shape::arena_node(x.in_arena + i, y.in_arena + j, z.in_arena), z.count);
+        f(Shape::own_node(x.from + i, y.from + j, z.from), Shape::arena_node(x.in_arena + i, y.in_arena + j, z.in_arena), count);
   }
+}
+
+/// Adds what the arena of neighbour M holds of a block's own nodes.
+template <class Sch, int M>
+JAXMPM_INLINE void add_shared_rows(const typename Sch::T* arena, typename Sch::T* own) {
+  using T = typename Sch::T;
+  for (int plane = 0; plane < Sch::planes; ++plane)
+    for_each_shared_row<typename Sch::Shape, Sch::Dim, Sch::S, M>([&](int own_node, int arena_node, auto count) {
+      const T* in = arena + plane * Sch::arena_plane + 4 * arena_node;
+      T* out = own + plane * Sch::own_plane + 4 * own_node;
+      for (int i = 0; i < 4 * count; ++i) out[i] += in[i];
+    });
 }
 
 /// Adds the arenas that reach block b, in their fixed order. own: [plane][node][4].
@@ -37,14 +55,10 @@ void sum_arenas(const Blocks<Sch::Dim>& blocks, std::size_t b, const typename Sc
   std::memset(own, 0, sizeof(T) * Sch::own_size);
   for (std::uint32_t k = blocks.first_contribution[b]; k < blocks.first_contribution[b + 1]; ++k) {
     const Contribution& from = blocks.contributions[k];
-    const NeighbourOffset<Sch::Dim> n(int(from.neighbour));
     const T* arena = arenas + std::size_t(from.tile) * Sch::arena_size;
-    for (int plane = 0; plane < Sch::planes; ++plane)
-      for_each_shared_row<typename Sch::Shape, Sch::Dim, Sch::S>(n.a, n.b, n.c, [&](int own_node, int arena_node, int count) {
-        const T* in = arena + plane * Sch::arena_plane + 4 * arena_node;
-        T* out = own + plane * Sch::own_plane + 4 * own_node;
-        for (int i = 0; i < 4 * count; ++i) out[i] += in[i];
-      });
+    static_for<Sch::Shape::neighbours>([&](auto m) {
+      if (int(from.neighbour) == m) add_shared_rows<Sch, m>(arena, own);
+    });
   }
 }
 
@@ -55,15 +69,15 @@ void load_arena(const Blocks<Sch::Dim>& blocks, std::size_t block, const typenam
   constexpr int filled = 4 * Sch::Shape::arena_nodes;
   for (int plane = 0; plane < Sch::planes; ++plane)  // rows read on behind the last node, with weight zero: what lies there must be finite
     std::memset(arena + plane * Sch::arena_plane + filled, 0, sizeof(T) * (Sch::arena_plane - filled));
-  for (int m = 0; m < Sch::Shape::neighbours; ++m) {
+  static_for<Sch::Shape::neighbours>([&](auto m) {
     const T* from = grid + std::size_t(blocks.neighbour[block * Sch::Shape::neighbours + std::size_t(m)]) * Sch::own_size;
-    const NeighbourOffset<Sch::Dim> n(m);
+    constexpr int mirrored = Sch::Shape::neighbours - 1 - m;  // the neighbour at the opposite distance: what it shares is what we take
     for (int plane = 0; plane < Sch::planes; ++plane)
-      for_each_shared_row<typename Sch::Shape, Sch::Dim, Sch::S>(-n.a, -n.b, -n.c, [&](int own_node, int arena_node, int count) {
+      for_each_shared_row<typename Sch::Shape, Sch::Dim, Sch::S, mirrored>([&](int own_node, int arena_node, auto count) {
         std::memcpy(arena + plane * Sch::arena_plane + 4 * arena_node, from + plane * Sch::own_plane + 4 * own_node,
                     sizeof(T) * 4 * std::size_t(count));
       });
-  }
+  });
 }
 
 /// Gravity, mass cut-off and Δt: what the nodes of a step need besides their sums.

@@ -11,6 +11,19 @@ double since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+/// Adds the time until the end of its scope to a sum.
+class Timed {
+ public:
+  explicit Timed(double& sum) : sum_(sum), begin_(std::chrono::steady_clock::now()) {}
+  ~Timed() { sum_ += since(begin_); }
+  Timed(const Timed&) = delete;
+  Timed& operator=(const Timed&) = delete;
+
+ private:
+  double& sum_;
+  std::chrono::steady_clock::time_point begin_;
+};
+
 // A state is kept in memory so rarely that it costs at most one part in this of the run, and a rescue repeats no more than that many times
 // its cost.
 constexpr double rescue_share = 100;
@@ -34,7 +47,7 @@ std::vector<std::string> Simulation::notices() const {
 RunOutcome Simulation::run(const RunStart& start) {
   started_ = last_checkpoint_ = Clock::now();
   now_ = start.at;
-  outcome_ = {start.at, false, start.seconds, 0};
+  outcome_ = {start.at, false, start.seconds, 0, {}};
   checkpointed_ = start.resumed;
   attempted_ = now_;
   remember();
@@ -71,9 +84,10 @@ void Simulation::step() {
   // The end shortens its step and is recorded out of turn. The checkpoint of a finished run is therefore the state before its last step,
   // from which a later end continues as if this one had never been.
   if (control_.done(after) && !checkpointed_) write_checkpoint();
-  const Clock::time_point begin = Clock::now();
-  solver_.step(after.dt);
-  outcome_.seconds += since(begin);
+  {
+    const Timed timed(outcome_.seconds);
+    solver_.step(after.dt);
+  }
   ++outcome_.steps;
   now_ = after;
   checkpointed_ = false;
@@ -81,13 +95,23 @@ void Simulation::step() {
 }
 
 void Simulation::record() {
-  if (gauges_.due(now_)) recorder_.gauges(now_);
-  if (frames_.due(now_)) recorder_.frame(now_);
+  if (gauges_.due(now_)) record_gauges();
+  if (frames_.due(now_)) record_frame();
 }
 
 void Simulation::record_end() {
-  if (!gauges_.due(now_)) recorder_.gauges(now_);
-  if (!frames_.due(now_)) recorder_.frame(now_);
+  if (!gauges_.due(now_)) record_gauges();
+  if (!frames_.due(now_)) record_frame();
+}
+
+void Simulation::record_gauges() {
+  const Timed timed(outcome_.output.gauges);
+  recorder_.gauges(now_);
+}
+
+void Simulation::record_frame() {
+  const Timed timed(outcome_.output.frames);
+  recorder_.frame(now_);
 }
 
 bool Simulation::should_stop() const {
@@ -101,12 +125,14 @@ void Simulation::checkpoint_if_due() {
 
 void Simulation::write_checkpoint() {
   remember();
+  const Timed timed(outcome_.output.checkpoints);
   recorder_.checkpoint(now_, remembered_, outcome_.seconds);
   last_checkpoint_ = Clock::now();
   checkpointed_ = true;
 }
 
 void Simulation::remember() {
+  const Timed timed(outcome_.output.checkpoints);
   const Clock::time_point begin = Clock::now();
   remembered_ = solver_.save();
   remembered_at_ = now_;

@@ -37,11 +37,17 @@ struct RunStart {
   double seconds = 0;  // wall time in steps before
 };
 
+/// Wall time that a run spent on what it leaves behind, s.
+struct OutputSeconds {
+  double frames = 0, gauges = 0, checkpoints = 0;
+};
+
 struct RunOutcome {
   Moment at;
   bool finished = false;    // false: stopped with a checkpoint
   double seconds = 0;       // wall time in steps, with those before a resume
   std::uint64_t steps = 0;  // taken by this process
+  OutputSeconds output;     // of this process
 };
 
 class Simulation {
@@ -59,6 +65,8 @@ class Simulation {
   void step();
   void record();
   void record_end();
+  void record_gauges();
+  void record_frame();
   bool should_stop() const;
   void checkpoint_if_due();
   void write_checkpoint();

@@ -41,6 +41,40 @@ class Commands(ProgramTest):
         self.assertGreater(result["peak_memory_bytes"], 1e6)
         self.assertLessEqual(sum(result["seconds_by_phase"].values()), 1.01 * result["seconds"])
 
+    def bench(self, deck, **assignments):
+        words = [word for pointer, value in assignments.items() for word in ("--set", f"{pointer.replace('__', '/')}={json.dumps(value)}")]
+        done = self.call("bench", deck, "--steps", "1", "--warm-up", "0", "--threads", "1", "--json", *words)
+        self.assertEqual(done.returncode, DONE, done.stderr)
+        return json.loads(done.stdout)
+
+    def test_bytes_per_particle_are_those_of_the_documentation(self):
+        elastic = {"density": 1000, "youngs_modulus": 1e6, "poisson_ratio": 0.3}
+        materials = {
+            "newtonian, inviscid": {"model": "newtonian", "density": 1000, "sound_speed": 20},
+            "newtonian, viscous": {"model": "newtonian", "density": 1000, "sound_speed": 20, "viscosity": 1},
+            "linear_elastic": {"model": "linear_elastic", **elastic}, "neo_hookean": {"model": "neo_hookean", **elastic},
+            "drucker_prager": {"model": "drucker_prager", "density": 1000, "bulk_modulus": 1e6, "poisson_ratio": 0.3, "friction_angle": 20},
+        }
+        page = (ROOT / "docs" / "performance.md").read_text(encoding="utf-8")
+        table = page[page.index("| material | 2D flip f32"):].split("\n\n")[0].splitlines()
+        columns = [name.split() for name in table[0].strip("|").split(" | ")[1:]]
+        stated = {cells[0].strip(): [float(c) for c in cells[1:]] for cells in (line.strip("|").split("|") for line in table[2:])}
+        self.assertEqual(set(stated), set(materials))
+        for (dim, transfer, precision), column in zip(columns, range(len(columns))):
+            n = int(dim[0])
+            scene = self.write(small_deck(
+                domain={"min": [0] * n, "max": [0.5] * n, "cell_size": 0.05}, gravity=[0] * n, obstacles=[], gauges={}, output={"interval": 0.1, "formats": ["hdf5"]},
+                bodies=[{"name": "block", "material": "water", "shape": {"box": {"min": [0.1] * n, "max": [0.2] * n}}}]))
+            for name, material in materials.items():
+                found = self.bench(scene, __materials__water=material, __method__transfer=transfer, __method__precision=precision)
+                self.assertEqual(found["bytes_per_particle"], stated[name][column], f"{name}, {dim} {transfer} {precision}")
+
+    def test_an_empty_domain_takes_no_memory(self):
+        deck = self.write(small_deck(gauges={}, obstacles=[]))
+        small, large = self.bench(deck), self.bench(deck, __domain__max=[10, 5])
+        self.assertEqual(small["active_blocks"], large["active_blocks"])
+        self.assertLess(large["peak_memory_bytes"], 1.02 * small["peak_memory_bytes"])
+
     def test_schema_and_info(self):
         schema = json.loads(self.call("schema").stdout)
         self.assertIn("2020-12", schema["$schema"])
