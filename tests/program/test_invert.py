@@ -9,7 +9,7 @@ import unittest
 import h5py
 import numpy as np
 
-from harness import DECK, DONE, IO, STOPPED, ProgramTest, small_deck, stop
+from harness import DECK, DONE, INPUTS, IO, ProgramTest, STOPPED, coarse_decks, small_deck, stop
 
 TRUTH = {"u0": 0.8, "friction": 0.3}
 
@@ -144,6 +144,15 @@ class Invert(InverseTest):
         # Four particles of a cell are more than its nodes can tell apart, so velocities come out right as the grid sees them: the paths are.
         start, found, truth = (self.positions(run, frame) for run, frame in (("truth", 0), ("again", 5), ("truth", 5)))
         self.assertLess(np.linalg.norm(found - truth) / np.linalg.norm(truth - start), 0.02)
+
+    def test_the_deposit_that_the_truth_leaves_can_be_observed(self):
+        forms = coarse_decks()
+        self.run_deck(INPUTS / "truth_granular_deposit.json", "deposit", *forms["truth_granular_deposit.json"])
+        data = json.dumps(str(self.scratch / "deposit" / "results.h5"))
+        done = self.call("gradient", INPUTS / "invert_granular_deposit.json", "--json", "--threads", "1", *forms["invert_granular_deposit.json"],
+                         "--set", f"/inverse/observations/0/file={data}")
+        self.assertEqual(done.returncode, DONE, done.stderr)
+        self.assertGreater(json.loads(done.stdout)["loss"], 0)
 
     def test_signals_and_wall_time(self):
         deck = self.deck(method="adam", iterations=20)
