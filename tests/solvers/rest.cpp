@@ -106,17 +106,16 @@ TEST_CASE("with blocks at rest a restored run goes on with the same bits, and re
   const auto whole = make_solver(model, Backend::cpu), resumed = make_solver(model, Backend::cpu),
              watched = make_solver(model, Backend::cpu);
   watched->record_forces(true);
-  std::uint64_t most = 0, least_later = whole->particle_count();
+  std::uint64_t most = 0;
   for (int n = 0; n < 255; ++n) {  // into the impact, with steps of changing length
     if (n == 25 || n == 240) resumed->restore(whole->save());
     const double dt = step * (1 + 0.1 * (n % 3));
     whole->step(dt), watched->step(dt);
     if (n >= 25) resumed->step(dt);
-    const std::uint64_t resting = whole->particles_at_rest();
-    most = std::max(most, resting), least_later = n > 600 ? std::min(least_later, resting) : least_later;
+    most = std::max(most, whole->particles_at_rest());
   }
   CHECK(most > 0);
-  CHECK(least_later < most);  // the impact has woken some
+  CHECK(whole->particles_at_rest() < most);  // the impact has woken some
   const auto a = whole->save(), b = resumed->save(), c = watched->save();
   REQUIRE((a.size() == b.size() && a.size() == c.size()));
   for (std::size_t k = 0; k < a.size(); ++k) {
