@@ -64,7 +64,7 @@ class Check:
     def run(self, deck, name, assignments=None, *more):
         """Runs a deck into out/validation/CASE/NAME and reads the results."""
         target = self.out / name
-        if not (self.reuse and (target / "run.json").is_file()):
+        if not (self.reuse and complete(target)):
             shutil.rmtree(target, ignore_errors=True)
             command = self.command(deck, name, assignments, *more)
             done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False, env=self.environment)
@@ -124,6 +124,12 @@ class Check:
 
 def _text(value):
     return value if value is None or isinstance(value, str) else f"{value:.4g}"
+
+
+def complete(target):
+    """Whether a run is there and was not stopped on its way."""
+    summary = target / "run.json"
+    return summary.is_file() and json.loads(summary.read_text(encoding="utf-8"))["outcome"] == "done"
 
 
 def reference(name):
