@@ -1,6 +1,5 @@
 // jaxmpm bench: the cost of steps alone, without output, after a warm-up; and of a gradient over as many.
 #include <chrono>
-#include <ctime>
 #include <iostream>
 #include <memory>
 
@@ -75,9 +74,6 @@ nlohmann::ordered_json bench_gradient(const Model& model, const std::string& mem
           {"measured_peak_bytes", cost.measured_peak_bytes}};
 }
 
-/// Processor time of all threads so far, s. Unlike wall time it leaves out what other programs had of the processors.
-double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
-
 PhaseSeconds operator-(const PhaseSeconds& a, const PhaseSeconds& b) {
   return {a.sort - b.sort, a.p2g - b.p2g, a.grid - b.grid, a.g2p - b.g2p};
 }
@@ -93,11 +89,11 @@ nlohmann::ordered_json measure(const BenchOptions& options) {
     for (Body& body : model.bodies) body.initial = {};
   std::vector<double> dt = take(*solver, model.time, options.warm_up);
   const PhaseSeconds before = solver->phase_seconds();
-  const double cpu_before = cpu_seconds();
+  const double cpu_before = processor_seconds();
   const auto begin = std::chrono::steady_clock::now();
   const std::vector<double> measured = take(*solver, model.time, options.steps);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  const double cpu = cpu_seconds() - cpu_before;
+  const double cpu = processor_seconds() - cpu_before;
   nlohmann::ordered_json result = cost_summary(model, *solver, backend, options.steps, seconds, solver->phase_seconds() - before);
   result["cpu_seconds"] = cpu;
   if (!options.gradient) return result;

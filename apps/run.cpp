@@ -133,6 +133,7 @@ class Run {
     json["total_steps"] = outcome.at.step;
     json["total_seconds"] = outcome.seconds;
     json.update(cost_summary(model_, *solver_, backend_, outcome.steps, outcome.seconds - start.seconds, solver_->phase_seconds()));
+    json["cpu_seconds"] = outcome.cpu_seconds;
     const OutputSeconds& output = outcome.output;
     json["seconds_by_output"] = {{"frames", output.frames}, {"gauges", output.gauges}, {"checkpoints", output.checkpoints}};
     write_file(directory_.summary(), json.dump(2) + "\n");

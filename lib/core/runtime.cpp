@@ -1,6 +1,7 @@
 #include "core/runtime.hpp"
 
 #include <Kokkos_Core.hpp>
+#include <ctime>
 #include <string>
 
 #include "core/error.hpp"
@@ -28,5 +29,7 @@ Runtime::Runtime(std::optional<int> threads) {
 Runtime::~Runtime() { Kokkos::finalize(); }
 
 int thread_count() { return Kokkos::DefaultHostExecutionSpace().concurrency(); }
+
+double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 }  // namespace jaxmpm

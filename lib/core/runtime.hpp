@@ -17,4 +17,7 @@ class Runtime {
 /// Host threads in use.
 int thread_count();
 
+/// Processor time of all threads so far, s. Unlike time by the clock it leaves out what other programs had of the processors.
+double processor_seconds();
+
 }  // namespace jaxmpm

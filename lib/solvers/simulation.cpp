@@ -3,6 +3,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include "core/error.hpp"
+#include "core/runtime.hpp"
 
 namespace jaxmpm {
 namespace {
@@ -22,6 +23,20 @@ class Timed {
  private:
   double& sum_;
   std::chrono::steady_clock::time_point begin_;
+};
+
+/// Adds the time until the end of its scope to a sum, and takes its processor time from the run's: that is the one of steps alone.
+class OutputTimed {
+ public:
+  OutputTimed(double& sum, double& cpu) : timed_(sum), cpu_(cpu), begin_(processor_seconds()) {}
+  ~OutputTimed() { cpu_ -= processor_seconds() - begin_; }
+  OutputTimed(const OutputTimed&) = delete;
+  OutputTimed& operator=(const OutputTimed&) = delete;
+
+ private:
+  Timed timed_;
+  double& cpu_;
+  double begin_;
 };
 
 // A state is kept in memory so rarely that it costs at most one part in this of the run, and a rescue repeats no more than that many times
@@ -47,7 +62,8 @@ std::vector<std::string> Simulation::notices() const {
 RunOutcome Simulation::run(const RunStart& start) {
   started_ = last_checkpoint_ = Clock::now();
   now_ = start.at;
-  outcome_ = {start.at, false, start.seconds, 0, {}};
+  outcome_ = {start.at, false, start.seconds, 0, 0, {}};
+  const double cpu_before = processor_seconds();
   checkpointed_ = start.resumed;
   attempted_ = now_;
   remember();
@@ -55,6 +71,7 @@ RunOutcome Simulation::run(const RunStart& start) {
     if (!start.resumed) record();
     loop();
     if (outcome_.finished) record_end();
+    outcome_.cpu_seconds += processor_seconds() - cpu_before;
   } catch (const NumericsError& failure) {
     rescue(failure);
   }
@@ -105,12 +122,12 @@ void Simulation::record_end() {
 }
 
 void Simulation::record_gauges() {
-  const Timed timed(outcome_.output.gauges);
+  const OutputTimed timed(outcome_.output.gauges, outcome_.cpu_seconds);
   recorder_.gauges(now_);
 }
 
 void Simulation::record_frame() {
-  const Timed timed(outcome_.output.frames);
+  const OutputTimed timed(outcome_.output.frames, outcome_.cpu_seconds);
   recorder_.frame(now_);
 }
 
@@ -125,14 +142,14 @@ void Simulation::checkpoint_if_due() {
 
 void Simulation::write_checkpoint() {
   remember();
-  const Timed timed(outcome_.output.checkpoints);
+  const OutputTimed timed(outcome_.output.checkpoints, outcome_.cpu_seconds);
   recorder_.checkpoint(now_, remembered_, outcome_.seconds);
   last_checkpoint_ = Clock::now();
   checkpointed_ = true;
 }
 
 void Simulation::remember() {
-  const Timed timed(outcome_.output.checkpoints);
+  const OutputTimed timed(outcome_.output.checkpoints, outcome_.cpu_seconds);
   const Clock::time_point begin = Clock::now();
   remembered_ = solver_.save();
   remembered_at_ = now_;

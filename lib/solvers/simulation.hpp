@@ -47,6 +47,7 @@ struct RunOutcome {
   bool finished = false;    // false: stopped with a checkpoint
   double seconds = 0;       // wall time in steps, with those before a resume
   std::uint64_t steps = 0;  // taken by this process
+  double cpu_seconds = 0;   // processor time of these
   OutputSeconds output;     // of this process
 };
 

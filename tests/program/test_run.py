@@ -34,6 +34,8 @@ class Results(ProgramTest):
         summary = json.loads((out / "run.json").read_text())
         self.assertEqual(summary["particles"], 576)
         self.assertEqual(summary["total_steps"], summary["steps"])
+        self.assertGreater(summary["cpu_seconds"], 0)
+        self.assertLess(summary["cpu_seconds"], 1.05 * summary["seconds"] + 0.02, "of one thread, output left out")
         self.assertEqual((out / "vtk" / "results.pvd").read_text().count("obstacles.vtp"), 6)
 
     def test_fixed_step_moves_times_to_the_nearest_step_and_says_so(self):
