@@ -14,17 +14,17 @@ inline constexpr double obstacle_tolerance = 1e-9;
 
 /// An obstacle's surface as a lattice node feels it. Behind a face of the domain the solid goes on as its mirror image, so the normal of a
 /// node on the face lies in the face (zero where nothing is left of it): else a slope would push the material out of the domain.
-inline SignedDistance surface_at_node(const RigidObstacle& obstacle, const Point& node, const std::array<int, 3>& cells, int dim) {
+inline SignedDistance surface_at_node(const RigidObstacle& obstacle, const Point& node, const Model& model) {
   SignedDistance surface = obstacle.signed_distance(node);
   bool on_face = false;
   double square = 0;
-  for (std::size_t d = 0; d < std::size_t(dim); ++d) {
-    if (node[d] == 0 || node[d] == cells[d]) on_face = true, surface.normal[d] = 0;
+  const auto dim = std::size_t(model.dim);
+  for (std::size_t d = 0; d < dim; ++d) {
+    if (!model.is_periodic(int(d)) && (node[d] == 0 || node[d] == model.cells[d])) on_face = true, surface.normal[d] = 0;
     square += surface.normal[d] * surface.normal[d];
   }
   constexpr double nothing = 1e-12;
-  for (std::size_t d = 0; on_face && d < std::size_t(dim); ++d)
-    surface.normal[d] = square > nothing ? surface.normal[d] / std::sqrt(square) : 0;
+  for (std::size_t d = 0; on_face && d < dim; ++d) surface.normal[d] = square > nothing ? surface.normal[d] / std::sqrt(square) : 0;
   return surface;
 }
 

@@ -49,8 +49,10 @@ JAXMPM_INLINE T obstacle_adjoint(deck::ContactKind kind, T friction, const Vecto
 template <class T, int Dim, class Raw, class Obstacles, class ObstaclesAdjoint, class Bar, class CoefficientBar>
 class WallAdjoint : WallUpdate<T, Dim, Raw, Obstacles> {
   using Update = WallUpdate<T, Dim, Raw, Obstacles>;
+  using typename Update::Mirror;
   using typename Update::Node;
   using typename Update::Seat;
+  using typename Update::Sides;
   using typename Update::V;
   const ObstaclesAdjoint& obstacles_adjoint_;
   const Bar& add_;
@@ -58,11 +60,24 @@ class WallAdjoint : WallUpdate<T, Dim, Raw, Obstacles> {
 
   JAXMPM_FUNCTION void fold_adjoint(const Node& node, const std::array<int, Dim>& twin_face, int skip, T by_mass,
                                     const V& by_momentum) const {
-    this->for_each_image(node, twin_face, skip, [&](const Node& image, const V& s) {
+    this->for_each_image(node, twin_face, skip, [&](const Node& image, const Mirror& m) {
       V by;
-      for (int c = 0; c < Dim; ++c) by[c] = s[c] * by_momentum[c];
-      add_(image, by_mass, by);
+      T by_image_mass = by_mass;
+      for (int c = 0; c < Dim; ++c) by[c] = m.sign[c] * by_momentum[c], by_image_mass += m.shift[c] * by_momentum[c];
+      add_(image, by_image_mass, by);
     });
+  }
+
+  /// Adjoint of reflected() along a face's normal: `by` is by its value.
+  JAXMPM_FUNCTION void reflected_adjoint(int face, const Seat& at, const Sides& s, T by) const {
+    if (!(s.mass > this->cut_off_)) return;
+    const int axis = face / 2;
+    const T value = this->reflected(s, axis), per_mass = by / s.mass;
+    V by_twin{}, by_ghost{};
+    by_twin[axis] = per_mass * s.ghost.mass, by_ghost[axis] = per_mass * s.twin.mass;
+    const T by_twin_mass = per_mass * (s.ghost.momentum[axis] - value), by_ghost_mass = per_mass * (s.twin.momentum[axis] - value);
+    fold_adjoint(this->beside(face, at.node, false), at.twin_face, axis, by_twin_mass, by_twin);
+    fold_adjoint(this->beside(face, at.node, true), at.twin_face, axis, by_ghost_mass, by_ghost);
   }
 
   /// Adjoint of apply_faces: `bar` by the velocity after the faces, then by the free velocity; adds to by_mass. `before`[axis]: velocity
@@ -73,12 +88,14 @@ class WallAdjoint : WallUpdate<T, Dim, Raw, Obstacles> {
       const int face = at.on_face[std::size_t(axis)];
       if (face < 0) continue;
       const auto kind = this->walls_.faces[std::size_t(face)].kind;
-      if (kind == deck::ContactKind::no_slip) bar = {};
       if (kind != deck::ContactKind::friction) continue;
-      const T normal = this->pressing(face, mass, free, this->beyond(face, at.node, at.twin_face));
+      const Sides s = this->sides(face, at.node, at.twin_face);
+      const T normal = this->pressing(face, mass, free, s);
       const int segment = this->walls_.segment(face, at.node);
       const T friction = this->walls_.coefficient[segment], loss = friction * max(T(0), normal) / mass;
-      V t = before[std::size_t(axis)];
+      const V u = this->wall_velocity(face, at.node);
+      V t;
+      for (int c = 0; c < Dim; ++c) t[c] = before[std::size_t(axis)][c] - u[c];
       const T by_normal_velocity = bar[axis];
       t[axis] = T(0), bar[axis] = T(0);
       const T by_loss = rub_adjoint<T, Dim>(t, loss, bar);
@@ -88,22 +105,20 @@ class WallAdjoint : WallUpdate<T, Dim, Raw, Obstacles> {
       add_coefficient_(segment, by_loss * normal / mass);
       const T by_normal = -this->inward(face) * by_loss * friction / mass;  // by the bracket in pressing()
       by_mass += by_normal * free[axis], by_free[axis] += by_normal * mass;
-      Node ghost = at.node;
-      ghost[std::size_t(axis)] += face % 2 == 0 ? -1 : 1;
-      V by_ghost{};
-      by_ghost[axis] = T(2) * by_normal;
-      fold_adjoint(ghost, at.twin_face, axis, T(0), by_ghost);
+      reflected_adjoint(face, at, s, T(2) * by_normal);
     }
-    for (int axis = 0; axis < Dim; ++axis)
-      if (at.on_face[std::size_t(axis)] >= 0) bar[axis] = T(0);
+    for (int axis = 0; axis < Dim; ++axis) {
+      const int face = at.on_face[std::size_t(axis)];
+      if (this->sticks(face)) bar = {};
+      else if (face >= 0) bar[axis] = T(0);
+    }
     for (int c = 0; c < Dim; ++c) bar[c] += by_free[c];
   }
 
   /// The faces once more, keeping the velocity before each.
   JAXMPM_FUNCTION std::array<V, Dim> apply_faces(const Seat& at, T mass, const V& free, V& v) const {
     std::array<V, Dim> before;
-    for (int axis = 0; axis < Dim; ++axis)
-      if (at.on_face[std::size_t(axis)] >= 0) v[axis] = T(0);
+    this->hold(at, v);
     for (int axis = 0; axis < Dim; ++axis) {
       before[std::size_t(axis)] = v;
       const int face = at.on_face[std::size_t(axis)];
@@ -126,7 +141,7 @@ class WallAdjoint : WallUpdate<T, Dim, Raw, Obstacles> {
     for (int c = 0; c < Dim; ++c) free[c] = sum.momentum[c] / sum.mass;
     V v = free;
     const std::array<V, Dim> before = apply_faces(at, sum.mass, free, v);
-    for (int c = 0; c < Dim; ++c) bar[c] *= at.mirror[c];
+    for (int c = 0; c < Dim; ++c) bar[c] *= at.mirror.sign[c];
     if (this->inside(at.node)) obstacles_adjoint_(at.node, v, bar);
     T by_mass(0);
     faces_adjoint(at, sum.mass, free, before, bar, by_mass);

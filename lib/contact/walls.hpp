@@ -17,6 +17,7 @@ struct Walls {
     deck::ContactKind kind;
     int first, count;  // its segments
     int segment_axis;
+    Vector<T, Dim> velocity;  // along itself, m/s
     JAXMPM_FUNCTION bool always() const { return kind == deck::ContactKind::slip || kind == deck::ContactKind::no_slip; }
   };
   std::array<int, Dim> cells;
@@ -32,9 +33,12 @@ struct Walls {
     }
     return k;
   }
+  JAXMPM_FUNCTION bool periodic(int axis) const { return faces[std::size_t(2 * axis)].kind == deck::ContactKind::periodic; }
   JAXMPM_FUNCTION T friction(int face, const std::array<int, Dim>& node) const { return coefficient[segment(face, node)]; }
   /// Whether a node is a ghost, a twin or on a face along some axis: everywhere else the update is plain division.
-  JAXMPM_FUNCTION bool near_face(int axis, int node) const { return node <= 1 || node >= cells[std::size_t(axis)] - 1; }
+  JAXMPM_FUNCTION bool near_face(int axis, int node) const {
+    return !periodic(axis) && (node <= 1 || node >= cells[std::size_t(axis)] - 1);
+  }
   JAXMPM_FUNCTION bool near_face(const std::array<int, Dim>& node) const {
     for (int d = 0; d < Dim; ++d)
       if (near_face(d, node[std::size_t(d)])) return true;
@@ -54,7 +58,8 @@ struct WallTable {
     for (int d = 0; d < Dim; ++d) cells[std::size_t(d)] = model.cells[std::size_t(d)];
     for (std::size_t f = 0; f < faces.size(); ++f) {
       const FaceLaw& law = model.faces[f];
-      faces[f] = {law.kind, int(to.size()), int(law.coefficient.size()), law.segment_axis};
+      faces[f] = {law.kind, int(to.size()), int(law.coefficient.size()), law.segment_axis, {}};
+      for (int c = 0; c < Dim; ++c) faces[f].velocity[c] = T(law.velocity[std::size_t(c)]);
       coefficient.insert(coefficient.end(), law.coefficient.begin(), law.coefficient.end());
       to.insert(to.end(), law.to.begin(), law.to.begin() + std::ptrdiff_t(std::min(law.to.size(), law.coefficient.size())));
       to.resize(coefficient.size());
@@ -92,9 +97,11 @@ class WallUpdate {
   T cut_off_;
 
   JAXMPM_FUNCTION int n(int axis) const { return walls_.cells[std::size_t(axis)]; }
-  JAXMPM_FUNCTION int reflect(int axis, int i) const { return i < 0 ? -i : (i > n(axis) ? 2 * n(axis) - i : i); }
+  JAXMPM_FUNCTION bool beyond_faces(int axis, int i) const { return !walls_.periodic(axis) && (i < 0 || i > n(axis)); }
+  JAXMPM_FUNCTION int reflect(int axis, int i) const { return !beyond_faces(axis, i) ? i : (i < 0 ? -i : 2 * n(axis) - i); }
   /// Face that a ghost, face or twin node belongs to along an axis, −1 for none.
   JAXMPM_FUNCTION int face_of(int axis, int i) const {
+    if (walls_.periodic(axis)) return -1;
     return i <= 1 && i >= -1 ? 2 * axis : (i >= n(axis) - 1 && i <= n(axis) + 1 ? 2 * axis + 1 : -1);
   }
   JAXMPM_FUNCTION int plane(int face) const { return face % 2 == 0 ? 0 : n(face / 2); }
@@ -102,10 +109,40 @@ class WallUpdate {
   JAXMPM_FUNCTION T sign(int face, int component) const {
     return component == face / 2 || walls_.faces[std::size_t(face)].kind == deck::ContactKind::no_slip ? T(-1) : T(1);
   }
+  JAXMPM_FUNCTION bool on_plane(int axis, int i) const { return !walls_.periodic(axis) && (i == 0 || i == n(axis)); }
+  /// Velocity of a face at a node, without what would push the material through another face that the node lies on.
+  JAXMPM_FUNCTION V wall_velocity(int face, const Node& node) const {
+    V u{};
+    for (int c = 0; c < Dim; ++c)
+      if (!on_plane(c, node[std::size_t(c)])) u[c] = walls_.faces[std::size_t(face)].velocity[c];
+    return u;
+  }
+  /// Velocities of images: v' = sign ∘ v + shift. `turned`: along which axes a face has turned the normal component.
+  struct Mirror {
+    V sign, shift;
+    std::array<bool, Dim> turned;
+  };
+  static JAXMPM_FUNCTION Mirror no_mirror() {
+    Mirror m{};
+    for (int c = 0; c < Dim; ++c) m.sign[c] = T(1);
+    return m;
+  }
+  /// The mirror image at a face of what a mirror gives: where the sign turns, the velocity relative to the wall does. The order of faces is
+  /// of no account: a normal component that turns takes the other walls' velocities with it.
+  JAXMPM_FUNCTION void reflect(int face, const Node& node, Mirror& m) const {
+    const V u = wall_velocity(face, node);
+    for (int c = 0; c < Dim; ++c) {
+      if (sign(face, c) > T(0)) continue;
+      const bool normal = c == face / 2;
+      const T twice = normal ? T(0) : T(2) * u[c];
+      m.sign[c] = -m.sign[c], m.shift[c] = (m.turned[std::size_t(c)] ? -twice : twice) - m.shift[c];
+      m.turned[std::size_t(c)] = m.turned[std::size_t(c)] || normal;
+    }
+  }
 
   JAXMPM_FUNCTION bool inside(const Node& node) const {
     for (int d = 0; d < Dim; ++d)
-      if (node[std::size_t(d)] < 0 || node[std::size_t(d)] > n(d)) return false;
+      if (beyond_faces(d, node[std::size_t(d)])) return false;
     return true;
   }
 
@@ -117,39 +154,35 @@ class WallUpdate {
     return f.mass > cut_off_ && f.momentum[face / 2] * inward(face) < 0;
   }
 
-  /// A node with regard to the faces in contact: the inner node whose image it is (itself where it is none), the signs that its velocity
-  /// takes, and per axis the face that the inner node lies on, or whose ghost is its twin (−1 for none).
+  /// A node with regard to the faces in contact: the inner node whose image it is (itself where it is none), the mirror that its velocity
+  /// goes through, and per axis the face that the inner node lies on, or whose ghost is its twin (−1 for none).
   struct Seat {
     Node node;
-    V mirror;
+    Mirror mirror;
     std::array<int, Dim> on_face, twin_face;
   };
   JAXMPM_FUNCTION Seat seat(const Node& asked) const {
     Seat s;
     s.node = asked;
-    for (int c = 0; c < Dim; ++c) s.mirror[c] = T(1);
+    s.mirror = no_mirror();
     for (int axis = 0; axis < Dim; ++axis) {
       const auto a = std::size_t(axis);
       s.on_face[a] = s.twin_face[a] = -1;
       const int face = face_of(axis, asked[a]);
       if (face < 0 || !in_contact(face, asked)) continue;
-      if (asked[a] < 0 || asked[a] > n(axis)) {
-        s.node[a] = reflect(axis, asked[a]);
-        for (int c = 0; c < Dim; ++c) s.mirror[c] *= sign(face, c);
-      }
+      if (beyond_faces(axis, asked[a])) s.node[a] = reflect(axis, asked[a]), reflect(face, asked, s.mirror);
       if (s.node[a] == plane(face)) s.on_face[a] = face;
       else s.twin_face[a] = face;
     }
     return s;
   }
 
-  /// Calls f(image, signs) for a node and those of its images that `folded` adds to it.
+  /// Calls f(image, mirror) for a node and those of its images that `folded` adds to it.
   template <class F>
   JAXMPM_FUNCTION void for_each_image(const Node& node, const std::array<int, Dim>& twin_face, int skip, F f) const {
     for (int subset = 0; subset < (1 << Dim); ++subset) {
       Node image = node;
-      V s;
-      for (int c = 0; c < Dim; ++c) s[c] = T(1);
+      Mirror mirror = no_mirror();
       bool valid = true;
       for (int axis = 0; axis < Dim && valid; ++axis) {
         if (!(subset >> axis & 1)) continue;
@@ -157,41 +190,48 @@ class WallUpdate {
         valid = axis != skip && face >= 0;
         if (!valid) break;
         image[std::size_t(axis)] = 2 * plane(face) - node[std::size_t(axis)];
-        for (int c = 0; c < Dim; ++c) s[c] *= sign(face, c);
+        reflect(face, node, mirror);
       }
-      if (valid) f(image, s);
+      if (valid) f(image, mirror);
     }
   }
   /// Sums of a node with the twins along the axes of `twin_face` (face per axis or −1) folded onto it, axis `skip` left out.
   JAXMPM_FUNCTION NodeSums<T, Dim> folded(const Node& node, const std::array<int, Dim>& twin_face, int skip) const {
     NodeSums<T, Dim> sum{};
-    for_each_image(node, twin_face, skip, [&](const Node& image, const V& s) {
+    for_each_image(node, twin_face, skip, [&](const Node& image, const Mirror& m) {
       const NodeSums<T, Dim> other = raw_(image);
       sum.mass += other.mass;
-      for (int c = 0; c < Dim; ++c) sum.momentum[c] += s[c] * other.momentum[c];
+      for (int c = 0; c < Dim; ++c) sum.momentum[c] += m.sign[c] * other.momentum[c] + m.shift[c] * other.mass;
     });
     return sum;
   }
-  /// What the material brings to a face from beyond it, for the node on it.
-  JAXMPM_FUNCTION NodeSums<T, Dim> beyond(int face, Node node, const std::array<int, Dim>& twin_face) const {
-    node[std::size_t(face / 2)] += face % 2 == 0 ? -1 : 1;
-    return folded(node, twin_face, face / 2);
+  /// The node beside a face node on the inner (twin) or the outer side (ghost).
+  JAXMPM_FUNCTION Node beside(int face, Node node, bool outside) const {
+    node[std::size_t(face / 2)] += (face % 2 == 0) == outside ? -1 : 1;
+    return node;
   }
-  /// Impulse with which the material presses on a face, positive towards it: the face node's own and twice its ghost's.
-  JAXMPM_FUNCTION T pressing(int face, T mass, const V& free, const NodeSums<T, Dim>& ghost) const {
-    return -inward(face) * (mass * free[face / 2] + T(2) * ghost.momentum[face / 2]);
+  /// Sums on both sides of a face node.
+  struct Sides {
+    NodeSums<T, Dim> twin, ghost;
+    T mass;  // of both
+  };
+  JAXMPM_FUNCTION Sides sides(int face, const Node& node, const std::array<int, Dim>& twin_face) const {
+    Sides s{folded(beside(face, node, false), twin_face, face / 2), folded(beside(face, node, true), twin_face, face / 2), T(0)};
+    s.mass = s.twin.mass + s.ghost.mass;
+    return s;
+  }
+  /// Half of the momentum along c that the mirror takes from twin and ghost: P_g + m_g v of the twin's velocity v = (P_t − P_g)/(m_t +
+  /// m_g).
+  JAXMPM_FUNCTION T reflected(const Sides& s, int c) const {
+    return s.mass > cut_off_ ? (s.twin.mass * s.ghost.momentum[c] + s.ghost.mass * s.twin.momentum[c]) / s.mass : T(0);
+  }
+  /// Normal impulse between the material and a face, positive where it presses: the face node's and what its neighbours' mirror takes.
+  JAXMPM_FUNCTION T pressing(int face, T mass, const V& free, const Sides& s) const {
+    return -inward(face) * (mass * free[face / 2] + T(2) * reflected(s, face / 2));
   }
   /// What remains of a velocity tangential to a face of size `speed` when friction takes `loss` (m/s) off it, to rest at most.
   static JAXMPM_FUNCTION T remaining(T loss, T speed) { return max(T(0), T(1) - loss / speed); }
-  JAXMPM_FUNCTION bool acts(deck::ContactKind kind) const {
-    return kind == deck::ContactKind::no_slip || kind == deck::ContactKind::friction;
-  }
-  static JAXMPM_FUNCTION T tangential_square(int axis, const V& v) {
-    T square = 0;
-    for (int c = 0; c < Dim; ++c)
-      if (c != axis) square += v[c] * v[c];
-    return square;
-  }
+  JAXMPM_FUNCTION bool sticks(int face) const { return face >= 0 && walls_.faces[std::size_t(face)].kind == deck::ContactKind::no_slip; }
 
  public:
   JAXMPM_FUNCTION WallUpdate(const Walls<T, Dim>& walls, const Raw& raw, const Obstacles& obstacles, T cut_off)
@@ -207,49 +247,56 @@ class WallUpdate {
     for (int c = 0; c < Dim; ++c) v[c] = sum.momentum[c] / sum.mass;
     apply_faces(at, sum.mass, v, contact);
     if (inside(at.node)) obstacles_(at.node, sum.mass, v);
-    for (int c = 0; c < Dim; ++c) v[c] *= at.mirror[c];
+    for (int c = 0; c < Dim; ++c) v[c] = at.mirror.sign[c] * v[c] + at.mirror.shift[c];
     return v;
   }
 
  protected:
+  /// What faces do before friction: v·n = 0 on all of them, and the wall's velocity on those where the material sticks.
+  JAXMPM_FUNCTION void hold(const Seat& at, V& v) const {
+    for (int axis = 0; axis < Dim; ++axis)
+      if (at.on_face[std::size_t(axis)] >= 0) v[axis] = T(0);
+    for (int axis = 0; axis < Dim; ++axis)
+      if (sticks(at.on_face[std::size_t(axis)])) v = wall_velocity(at.on_face[std::size_t(axis)], at.node);
+  }
   JAXMPM_FUNCTION void apply_faces(const Seat& at, T mass, V& v, NodeContact<T, Dim>* contact) const {
     const V free = v;
-    for (int axis = 0; axis < Dim; ++axis)  // normals first
-      if (at.on_face[std::size_t(axis)] >= 0) v[axis] = T(0);
+    hold(at, v);
     for (int axis = 0; axis < Dim; ++axis)
       if (at.on_face[std::size_t(axis)] >= 0) apply_face(at.on_face[std::size_t(axis)], at, mass, free, v, contact);
   }
-  /// What a face does beyond v·n = 0 to the node on it.
+  /// Friction of a face at the node on it, and its report.
   JAXMPM_FUNCTION void apply_face(int face, const Seat& at, T mass, const V& free, V& v, NodeContact<T, Dim>* contact) const {
     const auto kind = walls_.faces[std::size_t(face)].kind;
-    if (!contact && !acts(kind)) return;
-    const NodeSums<T, Dim> ghost = beyond(face, at.node, at.twin_face);
-    const T normal = pressing(face, mass, free, ghost);
-    if (kind == deck::ContactKind::no_slip) {
-      for (int c = 0; c < Dim; ++c) v[c] = T(0);
-    } else if (kind == deck::ContactKind::friction) {
-      rub(face / 2, walls_.friction(face, at.node) * max(T(0), normal) / mass, mass, v, contact);
-    }
-    if (contact) report(face, face / 2, kind, normal, mass, free, v, ghost, *contact);
+    if (!contact && kind != deck::ContactKind::friction) return;
+    const Sides beside_it = sides(face, at.node, at.twin_face);
+    const T normal = pressing(face, mass, free, beside_it);
+    const V u = wall_velocity(face, at.node);
+    if (kind == deck::ContactKind::friction) rub(face / 2, walls_.friction(face, at.node) * max(T(0), normal) / mass, mass, u, v, contact);
+    if (contact) report(face, face / 2, kind, normal, mass, free, v, u, beside_it, *contact);
   }
 
  private:
-  /// Takes `loss` (m/s) off the velocity tangential to a face, to rest at most.
-  JAXMPM_FUNCTION void rub(int axis, T loss, T mass, V& v, NodeContact<T, Dim>* contact) const {
-    const T square = tangential_square(axis, v);
+  /// Takes `loss` (m/s) off the velocity tangential to a face that moves with `u`, until both move together at most.
+  JAXMPM_FUNCTION void rub(int axis, T loss, T mass, const V& u, V& v, NodeContact<T, Dim>* contact) const {
+    T square = 0;
+    for (int c = 0; c < Dim; ++c)
+      if (c != axis) square += (v[c] - u[c]) * (v[c] - u[c]);
     if (!(square > 0)) return;
     const T scale = remaining(loss, sqrt(square));
     for (int c = 0; c < Dim; ++c)
-      if (c != axis) v[c] *= scale;
+      if (c != axis) v[c] = u[c] + scale * (v[c] - u[c]);
     if (contact) contact->friction_work += T(0.5) * mass * square * (T(1) - scale * scale);
   }
-  JAXMPM_FUNCTION void report(int face, int axis, deck::ContactKind kind, T normal, T mass, const V& free, const V& v,
-                              const NodeSums<T, Dim>& ghost, NodeContact<T, Dim>& contact) const {
+  JAXMPM_FUNCTION void report(int face, int axis, deck::ContactKind kind, T normal, T mass, const V& free, const V& v, const V& u,
+                              const Sides& s, NodeContact<T, Dim>& contact) const {
+    const T pair = s.mass > cut_off_ ? T(2) * s.twin.mass * s.ghost.mass / s.mass : T(0);
     auto& impulse = contact.impulse[std::size_t(face)];
     for (int c = 0; c < Dim; ++c) {
       if (c == axis) impulse[std::size_t(c)] += inward(face) * normal;
       else if (kind == deck::ContactKind::friction) impulse[std::size_t(c)] += mass * (v[c] - free[c]);
-      else if (kind == deck::ContactKind::no_slip) impulse[std::size_t(c)] -= mass * free[c] + T(2) * ghost.momentum[c];
+      else if (kind == deck::ContactKind::no_slip)
+        impulse[std::size_t(c)] -= mass * (free[c] - u[c]) + T(2) * (reflected(s, c) - pair * u[c]);
     }
   }
 };

@@ -88,6 +88,8 @@ std::set<std::string> identifiers(const std::string& expression) {
 
 void check_parameters(const Deck& deck, const Place& root) {
   std::set<std::string> used;
+  for (const Formula& component : deck.body_force)
+    if (const auto* text = std::get_if<std::string>(&component)) used.merge(identifiers(*text));
   for (const Body& body : deck.bodies)
     if (const auto* components = std::get_if<std::vector<Component>>(&body.velocity))
       for (const Component& component : *components)
@@ -115,13 +117,50 @@ void check_segments(const Deck& deck, const std::string& face, const Wall& wall,
                                       shown_number(wall.segments[last].to));
 }
 
+/// Periodic faces come in pairs, with whole blocks of the grid between them.
+void check_periodic(const Deck& deck, const std::string& face, const Place& root) {
+  const bool is_min = face.substr(1) == "_min";
+  const std::string opposite = face.substr(0, 1) + (is_min ? "_max" : "_min"), pointer = join(join("/walls", face), "kind");
+  const auto other = deck.walls.find(opposite);
+  if (other == deck.walls.end() || other->second.kind != ContactKind::periodic)
+    return root.reader.problem(pointer, "the opposite face " + opposite + " has to be periodic too");
+  const std::size_t axis = std::size_t(face[0] - 'x');
+  if (!is_min || !sound(root, "/domain")) return;
+  const long block = root.reader.dimension() == 2 ? 8 : 4,
+             cells = std::lround((deck.domain.max[axis] - deck.domain.min[axis]) / deck.domain.cell_size);
+  if (cells % block != 0)
+    root.reader.problem(pointer, "the domain is " + std::to_string(cells) + " cells wide along " + face[0] +
+                                     "; between periodic faces it has to be a multiple of " + std::to_string(block) +
+                                     " (a block of the grid): " + std::to_string(std::max(block, cells / block * block)) + " or " +
+                                     std::to_string((cells / block + 1) * block));
+}
+
+void check_wall_velocity(const std::string& face, const Wall& wall, const Place& root) {
+  const std::size_t axis = std::size_t(face[0] - 'x');
+  if (axis < wall.velocity.size() && wall.velocity[axis] != 0)
+    root.key("walls")
+        .key(face)
+        .key("velocity")
+        .item(axis)
+        .problem("must be 0: the faces of the domain move along themselves only, not towards the material");
+}
+
 void check_walls(const Deck& deck, const Place& root) {
   const int dimension = root.reader.dimension();
   for (const auto& [face, wall] : deck.walls) {
     if (dimension == 2 && face[0] == 'z')
       root.reader.problem(join("/walls", face), "a 2D domain has no such face; choose one of: " + described::listed(face_names(2)));
-    else if (root.given("walls")) check_segments(deck, face, wall, root);
+    else if (root.given("walls")) {
+      check_segments(deck, face, wall, root), check_wall_velocity(face, wall, root);
+      if (wall.kind == ContactKind::periodic) check_periodic(deck, face, root);
+    }
   }
+}
+
+void check_body_force(const Deck& deck, const Place& root) {
+  if (deck.body_force.empty()) return;
+  if (deck.method.rest) root.reader.problem("/method/rest", "a body force may move what is at rest at any time; remove one of the two");
+  if (deck.parameters.count("t") > 0) root.reader.problem("/parameters/t", "is the time in /body_force; choose another name");
 }
 
 }  // namespace
@@ -133,6 +172,7 @@ void check_scene(const Deck& deck, const Place& root) {
   check_initial_stress(deck, root);
   check_parameters(deck, root);
   check_walls(deck, root);
+  check_body_force(deck, root);
 }
 
 }  // namespace jaxmpm::deck

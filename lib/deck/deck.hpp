@@ -37,6 +37,7 @@ struct Method {
   Basis basis = Basis::quadratic;
   GradientForm gradient = GradientForm::spline;
   Precision precision = Precision::f64;
+  double damping = 0;
   std::optional<Rest> rest;
 };
 
@@ -109,6 +110,7 @@ struct Mlp {
   double output_scale = 1;
   Numbers weights; /* empty: drawn from the seed */
 };
+using Formula = std::variant<double, std::string>;         // a number, an expression
 using Component = std::variant<double, std::string, Mlp>;  // a number, an expression of x, y, z and parameters, a network
 struct ParticleFile {
   std::string file;
@@ -137,7 +139,7 @@ struct Body {
   std::optional<Jitter> jitter;
 };
 
-enum class ContactKind { slip, no_slip, separate, friction };
+enum class ContactKind { slip, no_slip, separate, friction, periodic /* walls only */ };
 struct Segment {
   double to = 0, coefficient = 0;
 };
@@ -145,6 +147,7 @@ struct Wall {
   ContactKind kind = ContactKind::slip;
   double coefficient = 0;
   std::vector<Segment> segments;
+  Numbers velocity;  // along the wall; empty: at rest
 };
 struct Obstacle {
   std::string name;
@@ -193,6 +196,7 @@ struct Deck {
   std::string title;
   Domain domain;
   Numbers gravity;
+  std::vector<Formula> body_force;  // empty: none
   Time time;
   Method method;
   std::map<std::string, double> parameters;

@@ -7,7 +7,8 @@ described::EnumNames<ContactKind> names_of(ContactKind) {
   return {{ContactKind::slip, "slip"},
           {ContactKind::no_slip, "no_slip"},
           {ContactKind::separate, "separate"},
-          {ContactKind::friction, "friction"}};
+          {ContactKind::friction, "friction"},
+          {ContactKind::periodic, "periodic"}};
 }
 
 std::vector<std::string> face_names(int dimension) {
@@ -25,7 +26,9 @@ void describe(Description<Segment>& d) {
 void describe(Description<Wall>& d) {
   d.is("wall", "Contact law of a face of the domain.");
   d.optional("kind", &Wall::kind)
-      .help("slip: no flow through it, both ways; no_slip: at rest; separate and friction: only where the material presses on it.");
+      .help(
+          "slip: no flow through it, both ways; no_slip: the material sticks to it; separate and friction: only where the material presses "
+          "on it; periodic: what leaves here enters through the opposite face, which has to be periodic too.");
   d.optional("coefficient", &Wall::coefficient)
       .from(0)
       .when(
@@ -40,6 +43,18 @@ void describe(Description<Wall>& d) {
           {"kind"}, [](const Wall& wall) { return wall.kind == ContactKind::friction; }, "kind \"friction\"")
       .otherwise("one coefficient for the whole wall")
       .help("Friction by stretches, in increasing order; the last ends at the domain's maximum.");
+  d.optional("velocity", &Wall::velocity)
+      .unit("m/s")
+      .vector()
+      .absent_when_empty()
+      .when(
+          {"kind"}, [](const Wall& wall) { return wall.kind == ContactKind::no_slip || wall.kind == ContactKind::friction; },
+          "kind \"no_slip\" or \"friction\"")
+      .otherwise("at rest")
+      .help(
+          "Of the wall along itself, as a belt runs; the domain stays where it is, so no component across it. It should not run into a "
+          "face "
+          "where the material sticks: what is in that corner can go nowhere and is crushed.");
   d.check({"kind"}, [](const Wall& wall, const described::Place& place) {
     if (wall.kind == ContactKind::friction && !place.given("coefficient") && !place.given("segments"))
       place.problem("coefficient", "is missing: kind \"friction\" needs it, or segments");
@@ -58,7 +73,7 @@ void describe(Description<Obstacle>& d) {
   d.is("obstacle", "A rigid solid at rest.");
   d.required("name", &Obstacle::name).help("Unique among obstacles.");
   d.required("shape", &Obstacle::shape);
-  d.optional("kind", &Obstacle::kind).help("As for walls.");
+  d.optional("kind", &Obstacle::kind).help("As for walls; not periodic.");
   d.optional("coefficient", &Obstacle::coefficient)
       .from(0)
       .when(
@@ -68,6 +83,8 @@ void describe(Description<Obstacle>& d) {
   d.check({"name"},
           [](const Obstacle& obstacle, const described::Place& place) { described::check_name(obstacle.name, place.key("name")); });
   d.check({"kind"}, [](const Obstacle& obstacle, const described::Place& place) {
+    if (obstacle.kind == ContactKind::periodic)
+      place.problem("kind", "only faces of the domain are periodic; choose slip, no_slip, separate or friction");
     if (obstacle.kind == ContactKind::friction && !place.given("coefficient"))
       place.problem("coefficient", "is missing: kind \"friction\" needs it");
   });

@@ -13,6 +13,15 @@ void describe(Description<Deck>& d) {
   d.optional("title", &Deck::title).help("One line for people.");
   d.required("domain", &Deck::domain);
   d.required("gravity", &Deck::gravity).unit("m/s²").vector().help("Any axis may be up.");
+  d.optional("body_force", &Deck::body_force)
+      .unit("m/s²")
+      .vector()
+      .absent_when_empty()
+      .otherwise("none")
+      .help(
+          "Force per unit mass besides gravity, at the nodes of the grid: per component a number or an expression of x, y, z, the time t "
+          "and "
+          "the deck's parameters. Only with --backend cpu.");
   d.required("time", &Deck::time);
   d.optional("method", &Deck::method).otherwise("its own defaults");
   d.optional("parameters", &Deck::parameters).help("Names for expressions; they may be unknowns of an inverse problem.");

@@ -111,6 +111,10 @@ void describe(Description<Method>& d) {
   d.optional("gradient", &Method::gradient)
       .help("Velocity gradient and internal force from the spline's gradient, or by moving least squares.");
   d.optional("precision", &Method::precision).help("Of particle and grid fields; positions are double always.");
+  d.optional("damping", &Method::damping)
+      .unit("1/s")
+      .from(0)
+      .help("Rate ζ at which motion is taken from the grid, m dv/dt = … − ζ m v, to let a scene come to rest (dynamic relaxation).");
   d.optional("rest", &Method::rest)
       .otherwise("none: every particle moves at every step")
       .help("Only with --backend cpu, and not in gradients.");

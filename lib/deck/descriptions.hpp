@@ -65,6 +65,7 @@ JAXMPM_CODEC(deck::Shape);
 JAXMPM_CODEC(deck::Union);
 JAXMPM_CODEC(deck::Difference);
 JAXMPM_CODEC(LayerArea);
+JAXMPM_CODEC(deck::Formula);
 JAXMPM_CODEC(deck::Component);
 JAXMPM_CODEC(deck::Velocity);
 JAXMPM_CODEC(deck::InitialStress);

@@ -1,5 +1,5 @@
 #pragma once
-// A formula of x, y, z and the deck's parameters, evaluated by muparser.
+// A formula of x, y, z, where asked for of the time t, and of the deck's parameters, evaluated by muparser.
 #include <memory>
 #include <vector>
 
@@ -10,9 +10,13 @@ namespace jaxmpm {
 /// Not to be evaluated by two threads at once: muparser keeps the place in variables of its own.
 class Expression : public Field {
  public:
-  Expression(const std::string& text, int dim, const std::map<std::string, double>& parameters, const std::string& pointer);
+  enum class Of { space, space_and_time };
+  Expression(const std::string& text, int dim, const std::map<std::string, double>& parameters, const std::string& pointer,
+             Of of = Of::space);
   ~Expression() override;
   double value(const std::array<double, 3>& place) const override;
+  /// Value at a place (m) and a time (s).
+  double value(const std::array<double, 3>& place, double time) const;
 
   /// As the deck gives it: the source of its derivatives.
   const std::string& text() const { return text_; }

@@ -5,6 +5,7 @@
 
 #include "core/error.hpp"
 #include "deck/inverse.hpp"
+#include "fields/body_force.hpp"
 #include "materials/constants.hpp"
 #include "scene/initial_gradient.hpp"
 
@@ -24,14 +25,16 @@ Parts parts_of(const std::string& pointer) {
 class SceneGradient {
  public:
   SceneGradient(const deck::Deck& deck, const Model& model, const ModelGradient& gradient)
-      : deck_(deck), gradient_(gradient), initial_(deck, model, initial_states(gradient)) {}
+      : deck_(deck), gradient_(gradient), initial_(deck, model, initial_states(gradient)) {
+    if (model.body_force) in_body_force_ = model.body_force->parameters();
+  }
 
   std::vector<double> by(const std::string& pointer) const {
     const Parts parts = parts_of(pointer);
     try {
       if (parts.at(0) == "gravity") return {by_gravity(std::stoul(parts.at(1)))};
       if (parts[0] == "method" && parts.at(1) == "flip_fraction") return {gradient_.flip_fraction};
-      if (parts[0] == "parameters") return {initial_.by_parameter(parts.at(1))};
+      if (parts[0] == "parameters") return {by_parameter(parts.at(1), pointer)};
       if (parts[0] == "materials") return {by_material(parts.at(1), parts.at(2), pointer)};
       if (parts[0] == "bodies") return by_body(std::stoul(parts.at(1)), parts, pointer);
       if (parts[0] == "walls") return {by_wall(parts)};
@@ -55,6 +58,11 @@ class SceneGradient {
 
   double by_gravity(std::size_t axis) const { return gradient_.gravity.at(axis) + initial_.by_weight(deck_.gravity.at(axis)); }
 
+  double by_parameter(const std::string& name, const std::string& pointer) const {
+    if (std::find(in_body_force_.begin(), in_body_force_.end(), name) != in_body_force_.end())
+      throw DeckError(pointer, "is used in /body_force, by which no derivative is computed; choose another unknown");
+    return initial_.by_parameter(name);
+  }
   double by_material(const std::string& name, const std::string& key, const std::string& pointer) const {
     const deck::Material& material = deck_.materials.at(name);
     const MaterialNumbers numbers = std::visit([](const auto& m) { return material_numbers(m); }, material);
@@ -98,6 +106,7 @@ class SceneGradient {
   const deck::Deck& deck_;
   const ModelGradient& gradient_;
   InitialGradient initial_;
+  Parts in_body_force_;  // names of parameters
 };
 
 }  // namespace

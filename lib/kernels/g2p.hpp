@@ -107,10 +107,10 @@ JAXMPM_INLINE void gather_batch(const Stencil& t, int count, const typename Sch:
   for (int l = count; l < batch<T>; ++l) std::memcpy(gathered.row(l), gathered.row(count - 1), sizeof(T) * std::size_t(4 * G::padded));
 }
 
-/// What the gather knows of the domain: cells along each axis, to catch particles that leave it.
+/// What the gather knows of the domain, to catch particles that leave it: its faces along each axis, cells; none where they are periodic.
 template <int Dim>
 struct DomainBounds {
-  Index<Dim> cells;
+  std::array<double, Dim> lower, upper;
 };
 
 /// Moves W particles and advances their material.
@@ -139,11 +139,11 @@ JAXMPM_INLINE void update_particles(Particles<typename Sch::T, Sch::Dim>& p, std
     alignas(64) T move[W];
     dX.store(move);
     double* X = p.position[std::size_t(c)].data() + s;
-    const double upper = domain.cells[std::size_t(c)];
+    const double lower = domain.lower[std::size_t(c)], upper = domain.upper[std::size_t(c)];
     int outside = 0;
     for (int l = 0; l < count; ++l) {
       X[l] += double(move[l]);
-      outside |= int(!(X[l] >= 0.0)) | int(!(X[l] <= upper));
+      outside |= int(!(X[l] >= lower)) | int(!(X[l] <= upper));
     }
     if (outside) report.sound = false;
   }

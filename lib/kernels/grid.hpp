@@ -80,15 +80,25 @@ void load_arena(const Blocks<Sch::Dim>& blocks, std::size_t block, const typenam
   });
 }
 
-/// Gravity, mass cut-off and Δt: what the nodes of a step need besides their sums.
+/// What the nodes of a step need besides their sums.
 template <class T, int Dim>
 struct GridConstants {
   Vector<T, Dim> gravity_step;  // Δt g, m/s
   T mass_cut_off;
+  T damped;  // part of the velocity that damping takes in a step, ζΔt/(1 + ζΔt)
 };
 
-/// One node where no wall is near: P = p + Δt f + Δt m g, v = P / m. Sums become velocities in place ({m, v}, and FLIP's {–, v − p/m} in
-/// `change`).
+/// Those of a step of length `dt`, s.
+template <class T, int Dim>
+GridConstants<T, Dim> grid_constants(const Model& model, T mass_cut_off, double dt) {
+  const double loss = model.method.damping * dt;
+  GridConstants<T, Dim> constants{{}, mass_cut_off, T(loss / (1 + loss))};
+  for (int c = 0; c < Dim; ++c) constants.gravity_step[c] = T(dt * model.gravity[std::size_t(c)]);
+  return constants;
+}
+
+/// One node where no wall is near: P = (p + Δt f + Δt m g)/(1 + ζΔt), v = P / m. Sums become velocities in place ({m, v}, and FLIP's
+/// {–, v − p/m} in `change`).
 template <class Sch>
 JAXMPM_INLINE void update_node(typename Sch::T* v, typename Sch::T* change, const GridConstants<typename Sch::T, Sch::Dim>& grid) {
   using T = typename Sch::T;
@@ -99,9 +109,11 @@ JAXMPM_INLINE void update_node(typename Sch::T* v, typename Sch::T* change, cons
     if constexpr (Sch::flip) {
       change[1 + c] = change[1 + c] * inverse + pull;
       v[1 + c] = v[1 + c] * inverse + change[1 + c];
+      change[1 + c] -= grid.damped * v[1 + c];
     } else {
       v[1 + c] = v[1 + c] * inverse + pull;
     }
+    v[1 + c] -= grid.damped * v[1 + c];
   }
 }
 

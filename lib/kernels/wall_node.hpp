@@ -40,6 +40,15 @@ JAXMPM_FUNCTION Place<Dim> locate(const int* around, const Index<Dim>& first, co
   return {around[neighbour], own};
 }
 
+/// Δt (g + b) at own node `own` of a block, m/s. `force`: Δt b of the nodes of all blocks, or null.
+template <class T, int Dim>
+JAXMPM_FUNCTION Vector<T, Dim> pull_at(const GridConstants<T, Dim>& constants, const T* force, int block, int own) {
+  Vector<T, Dim> pull = constants.gravity_step;
+  const std::size_t node = std::size_t(block) * std::size_t(BlockShape<Dim, 2>::cells) + std::size_t(own);
+  for (int c = 0; force && c < Dim; ++c) pull[c] += force[node * Dim + std::size_t(c)];
+  return pull;
+}
+
 /// Mass and predicted momentum near a block, from the sums of the blocks at walls: the `Raw` of WallUpdate.
 template <class T, int Dim>
 struct WallSums {
@@ -49,7 +58,8 @@ struct WallSums {
   const T* raw;          // [wall block][plane][own node][4]
   int planes;
   Index<Dim> first;
-  Vector<T, Dim> gravity_step;  // Δt g, m/s
+  GridConstants<T, Dim> constants;
+  const T* force;  // Δt b of the body force, m/s: [block][own node][Dim], null where there is none
 
   /// The quad of own node `own` of a block; null where nothing is known.
   JAXMPM_FUNCTION const T* quad(int block, int own) const {
@@ -62,9 +72,11 @@ struct WallSums {
     const T* q = quad(at.block, at.own);
     if (!q) return sum;
     sum.mass = q[0];
+    const Vector<T, Dim> pull = pull_at<T, Dim>(constants, force, at.block, at.own);
     for (int c = 0; c < Dim; ++c) {
       const T impulse = planes == 2 ? q[plane + 1 + c] : T(0);
-      sum.momentum[c] = q[1 + c] + impulse + sum.mass * gravity_step[c];
+      sum.momentum[c] = q[1 + c] + impulse + sum.mass * pull[c];
+      sum.momentum[c] -= constants.damped * sum.momentum[c];
     }
     return sum;
   }
@@ -79,6 +91,7 @@ template <class T, int Dim>
 JAXMPM_FUNCTION NodeStanding standing(const Walls<T, Dim>& walls, const Index<Dim>& node) {
   NodeStanding at;
   for (int d = 0; d < Dim; ++d) {
+    if (walls.periodic(d)) continue;
     const int i = node[std::size_t(d)], n = walls.cells[std::size_t(d)];
     at.inside = at.inside && i >= 0 && i <= n, at.reached = at.reached && i >= -1 && i <= n + 1;
   }

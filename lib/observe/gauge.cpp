@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/error.hpp"
+#include "core/parallel_host.hpp"
 #include "observe/gauges.hpp"
 
 namespace jaxmpm {
@@ -54,27 +55,33 @@ void GaugeSet::measure(const Moment& now, const Solver& solver) {
   const ContactForces forces = needs_forces() ? solver.forces() : ContactForces{};
   const Dissipation dissipation = solver.dissipation();
   const Scene scene{now, bodies, forces, dissipation};
-  std::map<std::string, Sample> samples;
-  for (const auto& [name, gauge] : gauges_) {
-    const GaugeSeries& past = series_[name];
-    const std::size_t width = past.width();
-    const std::vector<double> first(past.values.begin(), past.values.begin() + static_cast<std::ptrdiff_t>(past.time.empty() ? 0 : width));
-    Sample sample = gauge->measure(scene, past.time.empty() ? nullptr : &first);
-    if (!sample.valid) sample.values.assign(width, 0.0);
-    for (const double value : sample.values)
+  std::vector<const std::string*> names;
+  for (const auto& entry : gauges_) names.push_back(&entry.first);
+  std::vector<Sample> samples(names.size());
+  parallel_for_host("jaxmpm::gauges", names.size(), [&](std::size_t k) { samples[k] = read(*names[k], scene); });
+  for (std::size_t k = 0; k < names.size(); ++k)
+    for (const double value : samples[k].values)
       if (!std::isfinite(value))
         throw NumericsError(
-            fmt::format("gauge '{}' is not finite at step {}, {:.9g} s: the run is unstable. Take a smaller /time/step or /time/cfl.", name,
-                        now.step, now.time));
-    samples[name] = std::move(sample);
-  }
-  for (auto& [name, sample] : samples) {
-    GaugeSeries& series = series_[name];
+            fmt::format("gauge '{}' is not finite at step {}, {:.9g} s: the run is unstable. Take a smaller /time/step or /time/cfl.",
+                        *names[k], now.step, now.time));
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    const Sample& sample = samples[k];
+    GaugeSeries& series = series_[*names[k]];
     series.step.push_back(now.step);
     series.time.push_back(now.time);
     series.valid.push_back(sample.valid ? 1 : 0);
     series.values.insert(series.values.end(), sample.values.begin(), sample.values.end());
   }
+}
+
+Sample GaugeSet::read(const std::string& name, const Scene& scene) const {
+  const GaugeSeries& past = series_.at(name);
+  const std::size_t width = past.width();
+  const std::vector<double> first(past.values.begin(), past.values.begin() + static_cast<std::ptrdiff_t>(past.time.empty() ? 0 : width));
+  Sample sample = gauges_.at(name)->measure(scene, past.time.empty() ? nullptr : &first);
+  if (!sample.valid) sample.values.assign(width, 0.0);
+  return sample;
 }
 
 void GaugeSet::restore(const std::map<std::string, GaugeSeries>& series) {

@@ -77,6 +77,8 @@ class GaugeSet {
   void drop_after(std::uint64_t step);
 
  private:
+  Sample read(const std::string& name, const Scene& scene) const;
+
   std::map<std::string, std::unique_ptr<Gauge>> gauges_;
   std::map<std::string, GaugeSeries> series_;
   FieldSelection needs_;

@@ -75,9 +75,10 @@ class Height : public Gauge {
     for (std::size_t b = 0; b < scene.bodies.size(); ++b)
       for (std::size_t p = 0; counts(b) && p < scene.bodies[b].id.size(); ++p) {
         const BodySnapshot& body = scene.bodies[b];
-        double amount = body.mass[p] / body.density[p];
+        double amount = 1;
         for (int a = 0; a < dim_ && amount > 0; ++a)
           if (a != up_.axis) amount *= across(a, body.position[p * dim_ + a]);
+        if (amount > 0) amount *= body.mass[p] / body.density[p];
         if (amount > 0) column.push_back({up_.sign * body.position[p * dim_ + up_.axis], amount, b, p});
       }
     return column;

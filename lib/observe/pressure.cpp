@@ -48,9 +48,13 @@ class Pressure : public Gauge {
  private:
   /// V φ of a particle.
   double share(const BodySnapshot& body, std::size_t p) const {
-    double share = body.mass[p] / body.density[p];
-    for (int a = 0; a < dim_; ++a) share *= spline((body.position[p * dim_ + a] - at_[a]) / width_);
-    return share;
+    double share = 1;
+    for (int a = 0; a < dim_; ++a) {
+      const double r = (body.position[p * dim_ + a] - at_[a]) / width_;
+      if (!(std::abs(r) < 1.5)) return 0;  // most of them
+      share *= spline(r);
+    }
+    return share * body.mass[p] / body.density[p];
   }
 
   deck::Numbers at_;

@@ -1,5 +1,7 @@
 #pragma once
 // Walls, obstacles and the node velocities of the reference step: the section "Grid update" of docs/theory.md, one function per rule.
+#include <optional>
+
 #include "reference/step.hpp"
 
 namespace jaxmpm {
@@ -18,8 +20,11 @@ class ReferenceGridUpdate {
   /// A raw node that is folded onto an inner one: where it is, and the sign of each component of what it brings.
   struct Image {
     Node node;
-    Triple<double> sign;
+    Triple<double> sign{1, 1, 1}, shift{};  // v' = sign ∘ v + shift
+    std::array<bool, 3> turned{};           // along which axes a face has turned the normal component
   };
+  /// The image of an image of `node` at a face; what a turned normal component carries of other walls' velocities turns with it.
+  void reflect(int face, const Node& node, Image& image) const;
 
   int last(int axis) const { return model_.cells[axis]; }
   static int face_axis(int face) { return face / 2; }
@@ -38,7 +43,11 @@ class ReferenceGridUpdate {
   /// The node itself and its ghosts, over all subsets of the axes with contact; `skip` leaves an axis out (−1: none).
   std::vector<Image> images(const Node& inner, int skip) const;
 
-  Triple<Scalar> inner_velocity(const Node& inner);
+  /// Nothing where there is no mass.
+  std::optional<Triple<Scalar>> inner_velocity(const Node& inner);
+  bool on_face_in_contact(int face, const Node& inner) const { return inner[face_axis(face)] == plane(face) && in_contact(face, inner); }
+  /// Velocity of a face at a node: not against other faces that the node lies on.
+  Triple<double> wall_velocity(int face, const Node& inner) const;
   void apply_normals(const Node& inner, Triple<Scalar>& v) const;
   void apply_friction(const Node& inner, const Scalar& folded_mass, const std::vector<Image>& folded, Triple<Scalar>& v);
   void apply_obstacles(const Node& inner, const Scalar& folded_mass, const std::vector<Image>& folded, Triple<Scalar>& v);

@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "core/error.hpp"
+#include "fields/body_force.hpp"
 #include "materials/registry.hpp"
 #include "reference/grid_update.hpp"
 #include "reference/spline.hpp"
@@ -37,13 +38,16 @@ std::vector<Reach<Scalar>> stencil(const Model& model, const Triple<Scalar>& X) 
     for (int j = 0; j < support; ++j)
       for (int i = 0; i < support; ++i) {
         Reach<Scalar> r{{base[0] + i, base[1] + j, base[2] + k}, Scalar(1), {}, {}, {}};
+        const Node unwrapped = r.node;
+        for (int a = 0; a < model.dim; ++a)
+          if (model.is_periodic(a)) r.node[a] = ((unwrapped[a] % model.cells[a]) + model.cells[a]) % model.cells[a];
         for (int a = 0; a < model.dim; ++a) {
-          const Scalar xi = X[a] - Scalar(r.node[a]);
+          const Scalar xi = X[a] - Scalar(unwrapped[a]);
           r.weight *= spline(basis, xi);
           r.offset[a] = -xi * Scalar(h);
           r.slope[a] = spline_slope(basis, xi) / Scalar(h);
           for (int b = 0; b < model.dim; ++b)
-            if (b != a) r.slope[a] *= spline(basis, X[b] - Scalar(r.node[b]));
+            if (b != a) r.slope[a] *= spline(basis, X[b] - Scalar(unwrapped[b]));
         }
         for (int a = 0; a < model.dim; ++a)
           r.force_slope[a] =
@@ -82,9 +86,15 @@ void particles_to_grid(const Model& model, const ReferenceState<Scalar>& state, 
 
 /// Eqs 9, 13, 14.
 template <class Scalar>
-void predict(const Model& model, const Scalar& dt, ReferenceGrid<Scalar>& grid) {
-  for (auto& [index, node] : grid)
-    for (int c = 0; c < model.dim; ++c) node.predicted[c] = node.momentum[c] + dt * (node.force[c] + node.mass * Scalar(model.gravity[c]));
+void predict(const Model& model, const Scalar& dt, double time, ReferenceGrid<Scalar>& grid) {
+  const Scalar undamped = Scalar(1) / (Scalar(1) + Scalar(model.method.damping) * dt);
+  for (auto& [index, node] : grid) {
+    Point place{}, b{};
+    for (int d = 0; d < model.dim; ++d) place[d] = model.domain_min[d] + model.cell_size * index[d];
+    if (model.body_force) b = BodyForce::Loan(*model.body_force).at(place, time);
+    for (int c = 0; c < model.dim; ++c)
+      node.predicted[c] = undamped * (node.momentum[c] + dt * (node.force[c] + node.mass * Scalar(model.gravity[c] + b[c])));
+  }
 }
 
 template <class Scalar>
@@ -99,7 +109,7 @@ template <class Scalar>
 void check_position(const Model& model, const Triple<Scalar>& X, std::size_t body, std::size_t particle) {
   for (int a = 0; a < model.dim; ++a) {
     const double x = value_of(X[a]);
-    if (x >= 0 && x <= model.cells[a]) continue;
+    if (model.is_periodic(a) || (x >= 0 && x <= model.cells[a])) continue;
     std::ostringstream text;
     text << "reference step: particle " << particle << " of body '" << model.bodies[body].name << "' is at " << x << " cells along axis "
          << a << ", outside the domain of " << model.cells[a] << " cells; use a smaller time step";
@@ -214,13 +224,13 @@ std::array<Scalar, 6> reference_stress(const Model& model, const ReferenceState<
 }
 
 template <class Scalar>
-ReferenceReport<Scalar> reference_step(const Model& model, ReferenceState<Scalar>& state, const Scalar& dt) {
+ReferenceReport<Scalar> reference_step(const Model& model, ReferenceState<Scalar>& state, const Scalar& dt, double time) {
   if (model.method.gradient == deck::GradientForm::mls && model.method.basis == deck::Basis::linear)
     throw DeckError("/method/gradient", "\"mls\" needs a quadratic or cubic basis: the linear one has no invertible moment matrix");
   ReferenceReport<Scalar> report;
   report.obstacle_impulse.resize(model.obstacles.size());
   particles_to_grid(model, state, report.grid);
-  predict(model, dt, report.grid);
+  predict(model, dt, time, report.grid);
   ReferenceGridUpdate<Scalar>(model, Scalar(1e-20) * largest_mass(state), report).run();
   for (std::size_t b = 0; b < state.bodies.size(); ++b) {
     ReferenceBody<Scalar>& body = state.bodies[b];
@@ -237,7 +247,7 @@ template ReferenceState<double> reference_state(const Model&);
 template ReferenceState<ReferenceDual> reference_state(const Model&);
 template std::array<double, 6> reference_stress(const Model&, const ReferenceState<double>&, std::size_t, std::size_t);
 template std::array<ReferenceDual, 6> reference_stress(const Model&, const ReferenceState<ReferenceDual>&, std::size_t, std::size_t);
-template ReferenceReport<double> reference_step(const Model&, ReferenceState<double>&, const double&);
-template ReferenceReport<ReferenceDual> reference_step(const Model&, ReferenceState<ReferenceDual>&, const ReferenceDual&);
+template ReferenceReport<double> reference_step(const Model&, ReferenceState<double>&, const double&, double);
+template ReferenceReport<ReferenceDual> reference_step(const Model&, ReferenceState<ReferenceDual>&, const ReferenceDual&, double);
 
 }  // namespace jaxmpm

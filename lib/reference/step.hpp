@@ -16,7 +16,7 @@ struct ReferenceNode {
   Scalar mass{};               // m_i, raw sum
   Triple<Scalar> momentum{};   // p_i, raw sum
   Triple<Scalar> force{};      // f_i, internal
-  Triple<Scalar> predicted{};  // P_i = p_i + Δt (f_i + m_i gravity)
+  Triple<Scalar> predicted{};  // P_i = (p_i + Δt (f_i + m_i (gravity + body force)))/(1 + ζΔt)
   Triple<Scalar> velocity{};   // v_i after walls and obstacles
   Triple<Scalar> change{};     // Δv_i = v_i − p_i/m_i
 };
@@ -33,10 +33,10 @@ struct ReferenceReport {
   Scalar plastic{}, viscous{}, friction{};         // dissipated energy, J
 };
 
-/// One explicit step of length dt (Du & He 2025, Eqs 9–18). Throws NumericsError when a particle leaves the domain or is not finite, and
-/// DeckError for the mls gradient with the linear basis.
+/// One explicit step of length dt from `time` on, s (Du & He 2025, Eqs 9–18). Throws NumericsError when a particle leaves the domain or is
+/// not finite, and DeckError for the mls gradient with the linear basis.
 template <class Scalar>
-ReferenceReport<Scalar> reference_step(const Model& model, ReferenceState<Scalar>& state, const Scalar& dt);
+ReferenceReport<Scalar> reference_step(const Model& model, ReferenceState<Scalar>& state, const Scalar& dt, double time = 0);
 
 /// The scalars that the library is built for.
 using ReferenceDual = Dual<double, 1>;

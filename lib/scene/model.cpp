@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/error.hpp"
+#include "fields/body_force.hpp"
 #include "scene/initial_stress.hpp"
 #include "scene/initial_velocity.hpp"
 #include "scene/overburden.hpp"
@@ -25,6 +26,7 @@ std::array<FaceLaw, 6> make_faces(const deck::Deck& deck, const Frame& frame) {
     const auto wall = deck.walls.find(kFaceNames[face]);
     if (wall == deck.walls.end()) continue;
     law.kind = wall->second.kind;
+    std::copy(wall->second.velocity.begin(), wall->second.velocity.end(), law.velocity.begin());
     if (law.kind != deck::ContactKind::friction) continue;
     for (const deck::Segment& segment : wall->second.segments) {
       law.to.push_back(frame.coordinate(segment.to, law.segment_axis));
@@ -92,6 +94,23 @@ std::vector<std::string> cut_notices(const deck::Deck& deck, const std::vector<S
   return notices;
 }
 
+/// The deck's body force, which has to be a number wherever there is material at the start.
+std::shared_ptr<const BodyForce> make_body_force(const deck::Deck& deck, const Frame& frame, const std::vector<Body>& bodies) {
+  if (deck.body_force.empty()) return nullptr;
+  auto force = std::make_shared<const BodyForce>(deck.body_force, frame.dim, deck.parameters);
+  const BodyForce::Loan field(*force);
+  for (const Body& body : bodies)
+    for (const Point& place : body.initial.position) {
+      const Point b = field.at(frame.metres(place), 0);
+      for (int d = 0; d < frame.dim; ++d)
+        if (!std::isfinite(b[std::size_t(d)]))
+          throw DeckError("/body_force/" + std::to_string(d), "the force at " + frame.text(place) +
+                                                                  " at the start is not a finite number; make the expression hold wherever "
+                                                                  "the material may come");
+    }
+  return force;
+}
+
 bool names_velocity_gradient(const std::vector<std::string>& fields) {
   return std::find(fields.begin(), fields.end(), "velocity_gradient") != fields.end();
 }
@@ -133,6 +152,7 @@ Model build_model(const deck::Deck& deck) {
     set_masses(model.bodies[i], std::pow(scene.seeds[i].lattice.spacing * frame.cell_size, frame.dim));
     set_initial_velocity(deck, frame, i, model.bodies[i].initial);
   }
+  model.body_force = make_body_force(deck, frame, model.bodies);
   model.record_velocity_gradient = asks_for_velocity_gradient(deck);
   model.account_energy = has_energy_gauge(deck);
   model.notices = cut_notices(deck, scene.seeds);

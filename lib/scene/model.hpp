@@ -12,6 +12,8 @@
 
 namespace jaxmpm {
 
+class BodyForce;
+
 using Point = std::array<double, 3>;  // z unused in 2D (zero)
 
 /// Distance and direction of an obstacle's surface: distance < 0 inside the solid; `normal` is a unit vector out of the solid.
@@ -35,6 +37,7 @@ struct FaceLaw {
   std::vector<double> to;           // segment ends along `segment_axis`, in cells, increasing; one per coefficient
   std::vector<double> coefficient;  // friction only; a single one without segments
   int segment_axis = 0;
+  Point velocity{};  // of the wall, along itself, m/s
 };
 
 /// The particles of one body as they are seeded. Positions in cells from domain.min; ids are unique over the deck and increase with the
@@ -61,6 +64,7 @@ struct Model {
   Point domain_min{};
   double cell_size = 0;
   Point gravity{};
+  std::shared_ptr<const BodyForce> body_force;  // null where the deck has none
   deck::Method method;
   deck::Time time;
   std::array<FaceLaw, 6> faces;
@@ -69,6 +73,8 @@ struct Model {
   bool record_velocity_gradient = false;  // some output asks for it
   bool account_energy = false;            // an energy gauge asks for dissipation
   std::vector<std::string> notices;       // what seeding wants the user to know
+
+  bool is_periodic(int axis) const { return faces[std::size_t(2 * axis)].kind == deck::ContactKind::periodic; }
 };
 
 /// Builds the model of a deck: seeds bodies, evaluates initial fields, prepares walls and obstacles.

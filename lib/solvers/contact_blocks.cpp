@@ -44,7 +44,7 @@ auto ContactBlocks<T, Dim>::obstacle_nodes(const Node& block) const -> std::shar
     const RigidObstacle& obstacle = model_.obstacles[o];
     if (!obstacle.may_touch(lower, upper)) continue;
     for (int own = 0; own < Shape::cells; ++own) {
-      const SignedDistance s = surface_at_node(obstacle, as_point<Dim>(node_of<Dim>(first, own)), model_.cells, Dim);
+      const SignedDistance s = surface_at_node(obstacle, as_point<Dim>(node_of<Dim>(first, own)), model_);
       if (!(s.distance <= obstacle_tolerance)) continue;
       ObstacleNode<T, Dim> node{std::uint32_t(own), std::uint32_t(o), {}};
       for (int c = 0; c < Dim; ++c) node.normal[c] = T(s.normal[std::size_t(c)]);

@@ -68,8 +68,7 @@ void DeviceGrid<T, Dim, Space>::mirror_obstacles(std::size_t blocks) {
 
 template <class T, int Dim, class Space>
 void DeviceGrid<T, Dim, Space>::update(const Space& space, double dt) {
-  GridConstants<T, Dim> constants{{}, mass_cut_off_};
-  for (int c = 0; c < Dim; ++c) constants.gravity_step[c] = T(dt * model_.gravity[std::size_t(c)]);
+  const auto constants = grid_constants<T, Dim>(model_, mass_cut_off_, dt);
   if (forces_) {
     grow<double>(contact_, "jaxmpm::contact", tables_.blocks * tables_.contact_size);
     Kokkos::deep_copy(space, contact_, 0.0);

@@ -119,7 +119,7 @@ void DeviceStep<T, Dim, Space>::collect(double dt) {
   timer_.end_step();
   const double* report = published_.data();
   if (report[StepReport::unsound] != 0) report_failure();
-  numbers_.fastest = report[StepReport::fastest], numbers_.last_dt = dt;
+  numbers_.fastest = report[StepReport::fastest], numbers_.last_dt = dt, numbers_.time += dt;
   numbers_.drift += report[StepReport::displacement];
   numbers_.dissipation.plastic += report[StepReport::plastic], numbers_.dissipation.viscous += report[StepReport::viscous];
   contact_known_ = record_forces_;
@@ -171,9 +171,10 @@ ContactForces DeviceStep<T, Dim, Space>::forces() const {
   forces.obstacle.resize(model_.obstacles.size());
   if (!contact_known_) return forces;
   const std::vector<double> contact = grid_.contact(space_);
+  const double per_second = 1 / numbers_.last_dt + model_.method.damping;  // impulses are those on damped momenta
   for (std::size_t k = 0; k < 6 + forces.obstacle.size(); ++k) {
     Point& force = k < 6 ? forces.face[k] : forces.obstacle[k - 6];
-    for (std::size_t c = 0; c < 3; ++c) force[c] = contact[3 * k + c] / numbers_.last_dt;
+    for (std::size_t c = 0; c < 3; ++c) force[c] = contact[3 * k + c] * per_second;
   }
   return forces;
 }

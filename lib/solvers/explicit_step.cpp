@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <limits>
 
 #include "core/error.hpp"
 #include "core/parallel_host.hpp"
@@ -43,7 +45,12 @@ ExplicitStep<T, Dim>::ExplicitStep(const Model& model)
       grid_(model_, kernels_),
       rest_(model.method.rest),
       supports_(kernels_.arena_size) {
-  for (int d = 0; d < Dim; ++d) domain_.cells[std::size_t(d)] = model.cells[std::size_t(d)];
+  for (std::size_t d = 0; d < Dim; ++d) {
+    const bool periodic = model.is_periodic(int(d));
+    constexpr double far = std::numeric_limits<double>::infinity();
+    domain_.lower[d] = periodic ? -far : 0, domain_.upper[d] = periodic ? far : model.cells[d];
+    if (periodic) blocks_.period[d] = model.cells[d] / BlockShape<Dim, 2>::B;
+  }
   constants_ = {T(0), T(model.cell_size), T(model.method.flip_fraction)};
   grid_.record_contact(model.account_energy);
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
@@ -59,11 +66,23 @@ void ExplicitStep<T, Dim>::sort(std::vector<std::vector<std::uint32_t>>* orders)
   const Stopwatch time(seconds_.sort);
   blocks_.tiles.clear(), tile_key_.clear();
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    wrap(bodies_[b]);
     kernels_.sort(bodies_[b], std::uint32_t(b), extent_, scratch_, blocks_.tiles, tile_key_);
     if (orders) orders->push_back(scratch_.order);
   }
   rebuild_blocks();
   numbers_.drift = 0, ++sorts_;
+}
+
+/// Moves particles that have passed a periodic face by whole domains, so that their base nodes are 0 … N − 1.
+template <class T, int Dim>
+void ExplicitStep<T, Dim>::wrap(Particles<T, Dim>& particles) const {
+  const double base_shift = 0.5 * (kernels_.spline_nodes - 2);
+  for (std::size_t d = 0; d < Dim; ++d) {
+    if (blocks_.period[d] == 0) continue;
+    const double N = model_.cells[d];
+    for (double& X : particles.position[d]) X -= N * std::floor((X - base_shift) / N);
+  }
 }
 
 template <class T, int Dim>
@@ -124,7 +143,7 @@ void ExplicitStep<T, Dim>::scatter(std::size_t t, const StepConstants<T>& consta
 template <class T, int Dim>
 void ExplicitStep<T, Dim>::update_grid(double dt) {
   const Stopwatch time(seconds_.grid);
-  grid_.update(blocks_, arenas_.data(), dt);
+  grid_.update(blocks_, arenas_.data(), dt, numbers_.time);
 }
 
 template <class T, int Dim>
@@ -144,7 +163,7 @@ template <class T, int Dim>
 void ExplicitStep<T, Dim>::collect(double dt) {
   double moved = 0;
   bool sound = true;
-  numbers_.fastest = rest_.fastest(), numbers_.last_dt = dt;
+  numbers_.fastest = rest_.fastest(), numbers_.last_dt = dt, numbers_.time += dt;
   for (const std::uint32_t t : rest_.moving()) {
     const TileReport& r = reports_[t];
     numbers_.fastest = std::max(numbers_.fastest, r.fastest), moved = std::max(moved, r.displacement);
@@ -199,10 +218,11 @@ ContactForces ExplicitStep<T, Dim>::forces() const {
   forces.obstacle.resize(model_.obstacles.size());
   if (!record_forces_ || !(numbers_.last_dt > 0)) return forces;
   const BlockContact contact = grid_.contact();
+  const double per_second = 1 / numbers_.last_dt + model_.method.damping;  // impulses are those on damped momenta
   for (std::size_t f = 0; f < 6; ++f)
-    for (std::size_t c = 0; c < 3; ++c) forces.face[f][c] = contact.face[f][c] / numbers_.last_dt;
+    for (std::size_t c = 0; c < 3; ++c) forces.face[f][c] = contact.face[f][c] * per_second;
   for (std::size_t o = 0; o < forces.obstacle.size(); ++o)
-    for (std::size_t c = 0; c < 3; ++c) forces.obstacle[o][c] = contact.obstacle[o][c] / numbers_.last_dt;
+    for (std::size_t c = 0; c < 3; ++c) forces.obstacle[o][c] = contact.obstacle[o][c] * per_second;
   return forces;
 }
 

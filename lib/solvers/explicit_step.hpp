@@ -36,6 +36,7 @@ class ExplicitStep : public Solver {
   bool sort_is_due() const { return numbers_.drift > sort_after; }
   /// `orders` (may be null) receives per body where each particle was before.
   void sort(std::vector<std::vector<std::uint32_t>>* orders = nullptr);
+  void wrap(Particles<T, Dim>& particles) const;
   void rebuild_blocks();
   /// Who rests, and what is left to do.
   void choose_work();

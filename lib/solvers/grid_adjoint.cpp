@@ -29,7 +29,7 @@ void GridAdjoint<T, Dim>::update(const Blocks<Dim>& blocks, const T* arenas, dou
     const bool at_wall = contact.wall_slot()[b] >= 0;
     const std::vector<NearFace> near_face = at_wall ? wall_block_adjoint(blocks, b, constants) : std::vector<NearFace>{};
     if (contact.obstacles(b)) obstacles_adjoint(blocks, b, constants);
-    const V by_pull = adjoint_.update_nodes(forward_.sums(b), constants.mass_cut_off, own);
+    const V by_pull = adjoint_.update_nodes(forward_.sums(b), constants, own);
     for (int c = 0; c < Dim; ++c) block_[b].gravity[std::size_t(c)] = double(by_pull[c]);
     for (const NearFace& node : near_face) {
       T* by_sums = own + 4 * node.own;
@@ -79,9 +79,11 @@ void GridAdjoint<T, Dim>::obstacles_adjoint(const Blocks<Dim>& blocks, std::size
     if (at_wall && forward_.walls().near_face(node_of<Dim>(first, int(node.node)))) continue;
     T* by_v = bars + 4 * node.node + 1;
     const T* by_change = bars + cells * 4 + 4 * node.node + 1;
+    const V pull = forward_.pull(constants, b, int(node.node));
     V start, bar;
     for (int c = 0; c < Dim; ++c) {
-      start[c] = (sum[1 + c] + (flip ? sum[cells * 4 + 1 + c] : T(0))) / sum[0] + constants.gravity_step[c];
+      start[c] = (sum[1 + c] + (flip ? sum[cells * 4 + 1 + c] : T(0))) / sum[0] + pull[c];
+      start[c] -= constants.damped * start[c];
       bar[c] = by_v[c] + (flip ? by_change[c] : T(0));  // Δv follows v through the contact
     }
     obstacle_chain(b, int(node.node), start, bar, block_[b]);
@@ -150,7 +152,7 @@ auto GridAdjoint<T, Dim>::take_out(const T* sums, T cut_off, int own, T* bars, V
   return direct;
 }
 
-/// Adds the halos that reach a wall block, in the order of neighbours: P = p + impulse + m Δt g.
+/// Adds the halos that reach a wall block, in the order of neighbours: P = (p + impulse + m Δt (g + b))/(1 + ζΔt).
 template <class T, int Dim>
 void GridAdjoint<T, Dim>::collect_wall_block(const Blocks<Dim>& blocks, std::size_t b, const GridConstants<T, Dim>& constants) {
   const Node first = first_node<Dim>(blocks.index[b]);
@@ -160,7 +162,8 @@ void GridAdjoint<T, Dim>::collect_wall_block(const Blocks<Dim>& blocks, std::siz
     const int other = blocks.neighbour[b * around + std::size_t(m)];
     const int slot = other < 0 ? -1 : forward_.contact_blocks().wall_slot()[std::size_t(other)];
     if (slot < 0) continue;
-    const Node other_first = first_node<Dim>(blocks.index[std::size_t(other)]);
+    Node other_first = first;  // as seen from here, also across periodic faces
+    for (std::size_t d = Dim, rest = std::size_t(m); d-- > 0; rest /= 3) other_first[d] += B * (int(rest % 3) - 1);
     const Sum* halo = halo_.data() + std::size_t(slot) * halo_nodes;
     for (int own = 0; own < cells; ++own) {
       const Node node = node_of<Dim>(first, own);
@@ -168,13 +171,15 @@ void GridAdjoint<T, Dim>::collect_wall_block(const Blocks<Dim>& blocks, std::siz
       for (std::size_t d = 0; d < Dim; ++d) covered = covered && node[d] >= other_first[d] - reach && node[d] < other_first[d] + B + reach;
       if (!covered) continue;
       const Sum& by = halo[halo_node(node, other_first)];
+      const V pull = forward_.pull(constants, b, own);
       T* by_sums = bars + 4 * own;
       by_sums[0] += by.mass;
       for (int c = 0; c < Dim; ++c) {
-        by_sums[0] += by.momentum[c] * constants.gravity_step[c];
-        by_sums[1 + c] += by.momentum[c];
-        if (kernels_.planes == 2) by_sums[cells * 4 + 1 + c] += by.momentum[c];
-        block_[b].gravity[std::size_t(c)] += double(sums[4 * own] * by.momentum[c]);
+        const T by_undamped = by.momentum[c] - constants.damped * by.momentum[c];
+        by_sums[0] += by_undamped * pull[c];
+        by_sums[1 + c] += by_undamped;
+        if (kernels_.planes == 2) by_sums[cells * 4 + 1 + c] += by_undamped;
+        block_[b].gravity[std::size_t(c)] += double(sums[4 * own] * by_undamped);
       }
     }
   }

@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "core/parallel_host.hpp"
+#include "fields/body_force.hpp"
 
 namespace jaxmpm {
 namespace {
@@ -27,6 +28,7 @@ template <class T, int Dim>
 void GridUpdate<T, Dim>::rebuild(const Blocks<Dim>& blocks) {
   contact_blocks_.rebuild(blocks);
   grid_.resize(blocks.count() * kernels_.own_size), raw_.resize(contact_blocks_.wall_blocks().size() * kernels_.own_size);
+  if (model_.body_force) force_.resize(blocks.count() * std::size_t(cells * Dim));
   contact_.resize(blocks.count());
   summed_.resize(blocks.count()), at_walls_ = contact_blocks_.wall_blocks();
   std::iota(summed_.begin(), summed_.end(), 0u);
@@ -58,27 +60,25 @@ void GridUpdate<T, Dim>::select(const Blocks<Dim>& blocks, const std::vector<cha
 }
 
 template <class T, int Dim>
-GridConstants<T, Dim> GridUpdate<T, Dim>::constants(double dt) const {
-  GridConstants<T, Dim> constants{{}, mass_cut_off_};
-  for (int c = 0; c < Dim; ++c) constants.gravity_step[c] = T(dt * model_.gravity[std::size_t(c)]);
-  return constants;
-}
-
-template <class T, int Dim>
 WallSums<T, Dim> GridUpdate<T, Dim>::wall_sums(const Blocks<Dim>& blocks, std::size_t b, const GridConstants<T, Dim>& constants) const {
   return {blocks.neighbour.data() + b * around,
           contact_blocks_.wall_slot().data(),
           raw_.data(),
           kernels_.planes,
           first_node<Dim>(blocks.index[b]),
-          constants.gravity_step};
+          constants,
+          force()};
 }
 
 template <class T, int Dim>
-void GridUpdate<T, Dim>::update(const Blocks<Dim>& blocks, const T* arenas, double dt) {
+void GridUpdate<T, Dim>::update(const Blocks<Dim>& blocks, const T* arenas, double dt, double time) {
   const GridConstants<T, Dim> constants = this->constants(dt);
   if (keep_sums_) sums_.resize(blocks.count() * kernels_.own_size);
-  parallel_for_host("jaxmpm::grid", summed_.size(), [&](std::size_t k) { update_block(blocks, summed_[k], arenas, constants); });
+  parallel_for_host("jaxmpm::grid", summed_.size(), [&](std::size_t k) {
+    update_block(blocks, summed_[k], arenas, constants);
+    if (model_.body_force) apply_body_force(blocks, summed_[k], constants, dt, time);
+    if (contact_blocks_.obstacles(summed_[k])) apply_obstacles(blocks, summed_[k]);
+  });
   parallel_for_host("jaxmpm::walls", at_walls_.size(), [&](std::size_t w) { update_wall_block(blocks, at_walls_[w], constants); });
 }
 
@@ -92,7 +92,28 @@ void GridUpdate<T, Dim>::update_block(const Blocks<Dim>& blocks, std::size_t b, 
                                : (keep_sums_ ? sums_.data() + b * kernels_.own_size : nullptr))
     std::memcpy(kept, own, sizeof(T) * kernels_.own_size);
   kernels_.update_nodes(own, constants);
-  if (contact_blocks_.obstacles(b)) apply_obstacles(blocks, b);
+}
+
+/// Adds Δt b of a block's nodes to their velocities, and keeps it for those near walls.
+template <class T, int Dim>
+void GridUpdate<T, Dim>::apply_body_force(const Blocks<Dim>& blocks, std::size_t b, const GridConstants<T, Dim>& constants, double dt,
+                                          double time) {
+  T *own = grid_.data() + b * kernels_.own_size, *force = force_.data() + b * std::size_t(cells * Dim);
+  const Node first = first_node<Dim>(blocks.index[b]);
+  const BodyForce::Loan field(*model_.body_force);
+  for (int n = 0; n < cells; ++n) {
+    const bool some = own[4 * n] > constants.mass_cut_off;
+    const Node node = node_of<Dim>(first, n);
+    Point place{};
+    for (std::size_t d = 0; d < Dim; ++d) place[d] = model_.domain_min[d] + model_.cell_size * node[d];
+    const Point b_i = some ? field.at(place, time) : Point{};
+    for (int c = 0; c < Dim; ++c) {
+      const T step = T(dt * b_i[std::size_t(c)]), kept = step - constants.damped * step;
+      force[n * Dim + c] = step;
+      own[4 * n + 1 + c] += kept;
+      if (kernels_.planes == 2) own[4 * (cells + n) + 1 + c] += kept;
+    }
+  }
 }
 
 template <class T, int Dim>

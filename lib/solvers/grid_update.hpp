@@ -27,7 +27,8 @@ class GridUpdate {
   /// The blocks whose arenas update() adds up, ascending.
   const std::vector<std::uint32_t>& summed() const { return summed_; }
   /// Sums the arenas and turns them into velocities: afterwards grid() holds {–, v} (and FLIP's {–, Δv}) of every block that is updated.
-  void update(const Blocks<Dim>& blocks, const T* arenas, double dt);
+  /// `time`: that of the step's beginning, s.
+  void update(const Blocks<Dim>& blocks, const T* arenas, double dt, double time);
   const T* grid() const { return grid_.data(); }
 
   void record_contact(bool on) { recording_ = on; }
@@ -40,7 +41,11 @@ class GridUpdate {
   }
   /// The same, of a block at walls and its neighbours, with Δt g.
   WallSums<T, Dim> wall_sums(const Blocks<Dim>& blocks, std::size_t b, const GridConstants<T, Dim>& constants) const;
-  GridConstants<T, Dim> constants(double dt) const;
+  GridConstants<T, Dim> constants(double dt) const { return grid_constants<T, Dim>(model_, mass_cut_off_, dt); }
+  /// Δt (g + b) at a node of a block in the last update, m/s.
+  Vector<T, Dim> pull(const GridConstants<T, Dim>& constants, std::size_t b, int own) const {
+    return pull_at<T, Dim>(constants, force(), int(b), own);
+  }
   const ContactBlocks<T, Dim>& contact_blocks() const { return contact_blocks_; }
   const Walls<T, Dim>& walls() const { return walls_; }
   /// Totals of the last update, added up in the order of blocks; nothing rubs where all is at rest.
@@ -51,7 +56,9 @@ class GridUpdate {
   using Node = Index<Dim>;
   static constexpr int cells = BlockShape<Dim, 2>::cells, around = BlockShape<Dim, 2>::neighbours;
 
+  const T* force() const { return model_.body_force ? force_.data() : nullptr; }
   void update_block(const Blocks<Dim>& blocks, std::size_t b, const T* arenas, const GridConstants<T, Dim>& constants);
+  void apply_body_force(const Blocks<Dim>& blocks, std::size_t b, const GridConstants<T, Dim>& constants, double dt, double time);
   void update_wall_block(const Blocks<Dim>& blocks, std::size_t b, const GridConstants<T, Dim>& constants);
   void apply_obstacles(const Blocks<Dim>& blocks, std::size_t b);
   void record(std::size_t b, std::uint32_t obstacle, const ObstacleContact<T, Dim>& done);
@@ -63,6 +70,7 @@ class GridUpdate {
   Walls<T, Dim> walls_;
   T mass_cut_off_;
   Array<T> grid_, raw_, sums_;  // [block][own], [wall block][own], [block][own] where kept
+  Array<T> force_;              // [block][own node][Dim]: Δt b, m/s, where there is a body force
   bool keep_sums_ = false;
   bool recording_ = false;
   std::vector<std::uint32_t> summed_, at_walls_;  // blocks whose arenas are added up, and those whose wall nodes are updated

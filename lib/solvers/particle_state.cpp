@@ -74,7 +74,8 @@ BodySnapshot body_snapshot(const Model& model, const Body& body, const MaterialK
     const double e = double(p.compression[a]), mass = double(p.mass[a]), density = rho0 * (1 + e);
     s.id[i] = p.id[a], s.mass[i] = mass, s.volume[i] = mass / density;
     for (std::size_t d = 0; d < Dim; ++d) {
-      s.position[i * Dim + d] = model.domain_min[d] + p.position[d][a] * model.cell_size;
+      const double X = p.position[d][a], passed = model.is_periodic(int(d)) ? std::floor(X / model.cells[d]) : 0;
+      s.position[i * Dim + d] = model.domain_min[d] + (X - passed * model.cells[d]) * model.cell_size;
       if (fields.velocity) s.velocity[i * Dim + d] = double(p.velocity[d][a]);
     }
     if (fields.density) s.density[i] = density;
@@ -108,7 +109,7 @@ std::vector<RawArray> save_state(const std::vector<Particles<T, Dim>>& bodies, c
     rows.insert(rows.end(), {std::int64_t(tiles[t].body), tile_key[t], std::int64_t(tiles[t].begin), std::int64_t(tiles[t].end)});
   arrays.push_back(pack_array("tiles", rows.data(), rows.size()));
   const Dissipation& lost = numbers.dissipation;
-  const double values[] = {numbers.drift, numbers.fastest, numbers.last_dt, lost.plastic, lost.viscous, lost.friction};
+  const double values[] = {numbers.drift, numbers.fastest, numbers.last_dt, numbers.time, lost.plastic, lost.viscous, lost.friction};
   arrays.push_back(pack_array("numbers", values, std::size(values)));
   return arrays;
 }
@@ -123,9 +124,9 @@ void restore_state(const std::vector<RawArray>& arrays, std::vector<Particles<T,
   }
   std::vector<std::int64_t> rows(find_array(arrays, "tiles").bytes.size() / sizeof(std::int64_t));
   unpack_array(arrays, "tiles", rows);
-  std::array<double, 6> values{};
+  std::array<double, 7> values{};
   unpack_array(arrays, "numbers", values);
-  numbers = {values[0], values[1], values[2], {values[3], values[4], values[5]}};
+  numbers = {values[0], values[1], values[2], values[3], {values[4], values[5], values[6]}};
   tiles.clear(), tile_key.clear();
   for (std::size_t t = 0; t + 3 < rows.size(); t += 4) {
     const Tile tile{std::uint32_t(rows[t]), 0, std::size_t(rows[t + 2]), std::size_t(rows[t + 3])};
@@ -144,7 +145,8 @@ void check_particles(const Model& model, const Body& body, const Particles<T, Di
     std::ostringstream place;
     for (std::size_t d = 0; d < Dim; ++d) {
       const double X = p.position[d][a];
-      inside = inside && X >= 0 && X <= model.cells[d], finite = finite && std::isfinite(X) && std::isfinite(p.velocity[d][a]);
+      inside = inside && (model.is_periodic(int(d)) || (X >= 0 && X <= model.cells[d])),
+      finite = finite && std::isfinite(X) && std::isfinite(p.velocity[d][a]);
       place << (d ? ", " : "") << model.domain_min[d] + X * model.cell_size;
     }
     for (const auto& h : p.history) finite = finite && std::isfinite(h[a]);

@@ -11,6 +11,7 @@ struct StepNumbers {
   double drift = 0;    // largest way since the last sort, cells
   double fastest = 0;  // largest c + |v| of the present state, m/s
   double last_dt = 0;  // s
+  double time = 0;     // s
   Dissipation dissipation;
 };
 

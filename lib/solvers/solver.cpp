@@ -37,6 +37,10 @@ std::unique_ptr<Solver> make_solver(const Model& model, Backend backend) {
   check_extent(model);
   if (backend == Backend::cuda && model.method.rest)
     throw DeckError("/method/rest", "a GPU moves every particle at every step; give --backend cpu, or remove it");
+  if (backend == Backend::cuda && model.body_force)
+    throw DeckError("/body_force", "is evaluated on the CPU alone; give --backend cpu, or remove it");
+  for (int d = 0; backend == Backend::cuda && d < model.dim; ++d)
+    if (model.is_periodic(d)) throw DeckError("/walls", "periodic faces are for the CPU alone; give --backend cpu, or other faces");
   if (!has_backend(backend))
     throw Error(ExitCode::deck, "this program was built without CUDA; use --backend cpu, or build with scripts/build-cuda");
 #if defined(KOKKOS_ENABLE_CUDA)

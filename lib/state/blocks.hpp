@@ -62,6 +62,7 @@ struct Blocks {
   std::vector<Tile> tiles;                        // by body, then by block
   std::vector<std::uint32_t> first_contribution;  // [block + 1]
   std::vector<Contribution> contributions;
+  Index<Dim> period{};  // blocks between periodic faces, 0 along other axes: there the first block follows the last
   std::size_t count() const { return index.size(); }
 };
 

@@ -125,12 +125,44 @@ inline std::vector<std::int64_t> with_both_sides(const std::vector<std::int64_t>
 
 }  // namespace sort_detail
 
+/// The block of a key.
+template <int Dim>
+Index<Dim> block_of_key(std::int64_t key, const Index<Dim>& extent) {
+  Index<Dim> block{};
+  for (std::size_t d = Dim; d-- > 0; key /= extent[d]) block[d] = int(key % extent[d]);
+  return block;
+}
+
 /// The key of a block, ascending along the last axis first.
 template <int Dim>
 std::int64_t block_key(const Index<Dim>& block, const Index<Dim>& extent) {
   std::int64_t key = 0;
   for (std::size_t d = 0; d < Dim; ++d) key = key * extent[d] + block[d];
   return key;
+}
+
+/// A block's neighbour at a distance (−1, 0, 1 along each axis, as `m` numbers them), across periodic faces too.
+template <int Dim>
+Index<Dim> neighbour_of(const Index<Dim>& block, std::size_t m, const Index<Dim>& period, int margin) {
+  Index<Dim> other = block;
+  for (std::size_t d = Dim; d-- > 0; m /= 3) {
+    other[d] += int(m % 3) - 1;
+    if (period[d] > 0) other[d] = margin + (other[d] - margin + period[d]) % period[d];
+  }
+  return other;
+}
+
+/// Keys of the blocks of `keys` and of all around them, ascending, where some faces are periodic.
+template <int Dim>
+std::vector<std::int64_t> with_neighbours(const std::vector<std::int64_t>& keys, const Index<Dim>& extent, const Index<Dim>& period,
+                                          std::size_t around, int margin) {
+  std::vector<std::int64_t> all;
+  for (const std::int64_t key : keys)
+    for (std::size_t m = 0; m < around; ++m)
+      all.push_back(block_key<Dim>(neighbour_of<Dim>(block_of_key<Dim>(key, extent), m, period, margin), extent));
+  std::sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  return all;
 }
 
 /// Active blocks, neighbours and contributions of the tiles that sort_particles made.
@@ -141,18 +173,24 @@ void build_blocks(Blocks<Dim>& blocks, const std::vector<std::int64_t>& tile_key
   std::vector<std::int64_t> keys = tile_key;
   std::sort(keys.begin(), keys.end());
   keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
-  for (const std::int64_t distance : stride) keys = sort_detail::with_both_sides(keys, distance);
+  const bool periodic = blocks.period != Index<Dim>{};
+  if (periodic) keys = with_neighbours<Dim>(keys, extent, blocks.period, around, BlockShape<Dim, S>::margin);
+  else
+    for (const std::int64_t distance : stride) keys = sort_detail::with_both_sides(keys, distance);
 
   const std::size_t n = keys.size();
   blocks.index.resize(n), blocks.neighbour.assign(n * around, Blocks<Dim>::none);
-  for (std::size_t b = 0; b < n; ++b) {
-    std::int64_t rest = keys[b];
-    for (std::size_t d = 0; d < Dim; ++d) blocks.index[b][d] = int(rest / stride[d]), rest %= stride[d];
-  }
+  for (std::size_t b = 0; b < n; ++b) blocks.index[b] = block_of_key<Dim>(keys[b], extent);
   constexpr std::size_t share = 1024;  // blocks side by side: threads that wrote by turns would fight over the memory's lines
   parallel_for_host("jaxmpm::blocks", (n + share - 1) / share, [&](std::size_t part) {
     const std::size_t first = part * share, last = std::min(first + share, n);
-    for (std::size_t m = 0; m < around; ++m) {  // of neighbour m = (a·3 + b)·3 + c
+    for (std::size_t m = 0; periodic && m < around; ++m)
+      for (std::size_t b = first; b < last; ++b) {
+        const std::int64_t key = block_key<Dim>(neighbour_of<Dim>(blocks.index[b], m, blocks.period, BlockShape<Dim, S>::margin), extent);
+        const auto other = std::lower_bound(keys.begin(), keys.end(), key);
+        if (other != keys.end() && *other == key) blocks.neighbour[b * around + m] = int(other - keys.begin());
+      }
+    for (std::size_t m = 0; !periodic && m < around; ++m) {  // of neighbour m = (a·3 + b)·3 + c
       std::int64_t offset = 0;
       for (std::size_t d = Dim, rest = m; d-- > 0; rest /= 3) offset += (std::int64_t(rest % 3) - 1) * stride[d];
       auto other = std::lower_bound(keys.begin(), keys.end(), keys[first] + offset);

@@ -41,9 +41,9 @@ TEST_CASE("Velocity from a file names every particle once") {
 
 TEST_CASE("Walls in cells") {
   deck::Deck deck = water_deck({1, 0}, {3, 4}, 0.5, box({1, 0}, {2, 2}));
-  deck.walls["y_min"] = {deck::ContactKind::friction, 0, {{1.5, 0.5}, {3, 0.1}}};
-  deck.walls["x_max"] = {deck::ContactKind::friction, 0.3, {}};
-  deck.walls["x_min"] = {deck::ContactKind::no_slip, 0, {}};
+  deck.walls["y_min"] = {deck::ContactKind::friction, 0, {{1.5, 0.5}, {3, 0.1}}, {}};
+  deck.walls["x_max"] = {deck::ContactKind::friction, 0.3, {}, {}};
+  deck.walls["x_min"] = {deck::ContactKind::no_slip, 0, {}, {}};
   const Model model = build_model(deck);
   CHECK(model.faces[0].kind == deck::ContactKind::no_slip);
   CHECK(model.faces[1].coefficient == std::vector<double>{0.3});

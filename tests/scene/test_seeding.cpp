@@ -158,7 +158,7 @@ TEST_CASE("Ten kilometres from the origin the model has the same bits") {
     deck.bodies[1].shape = {deck::Polygon{{{east + 0.6, north + 0.013}, {east + 1.2, north + 0.017}, {east + 0.9, north + 0.339}}}};
     deck.bodies[1].jitter = deck::Jitter{0.5, 2};
     deck.obstacles.push_back({"ball", {deck::Sphere{{east + 0.45, north + 0.2}, 0.077}}, deck::ContactKind::separate, 0});
-    deck.walls["y_min"] = {deck::ContactKind::friction, 0, {{east + 0.4, 0.5}, {east + 1.6, 0.1}}};
+    deck.walls["y_min"] = {deck::ContactKind::friction, 0, {{east + 0.4, 0.5}, {east + 1.6, 0.1}}, {}};
     return build_model(deck);
   };
   const Model here = scene(0, 0), there = scene(10000, 10000);

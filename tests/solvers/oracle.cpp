@@ -63,11 +63,11 @@ struct Difference {
 };
 
 /// Differences of every field after one more step of both.
-std::map<std::string, Difference> compare(const Model& model, Solver& solver, double dt) {
+std::map<std::string, Difference> compare(const Model& model, Solver& solver, double dt, double time) {
   ReferenceState<double> state = state_of(model, arrays_of(solver));
   const Arrays before = arrays_of(solver);
   solver.step(dt);
-  reference_step(model, state, dt);
+  reference_step(model, state, dt, time);
   const Arrays after = arrays_of(solver);
   std::map<std::string, Difference> found;
   for (std::size_t b = 0; b < state.bodies.size(); ++b) {
@@ -99,7 +99,7 @@ void check_step(const Model& model, double dt) {
   const auto solver = make_solver(model, Backend::cpu);
   for (int warm_up = 0; warm_up < 3; ++warm_up) solver->step(dt);
   const double tolerance = model.method.precision == deck::Precision::f64 ? 1e-12 : 2e-5;
-  for (const auto& [field, difference] : compare(model, *solver, dt)) {
+  for (const auto& [field, difference] : compare(model, *solver, dt, 3 * dt)) {
     INFO("field " << field << ", largest " << difference.largest);
     CHECK(difference.relative() < tolerance);
   }
@@ -128,6 +128,44 @@ TEST_CASE("the fast step matches the reference step for every material and wall"
   CAPTURE(dim, int(method.precision), int(method.transfer), int(kind));
   check_step(busy_scene(dim, method, water(), rubber(), kind), 1e-4);
   check_step(busy_scene(dim, method, sand(), elastic(), kind), 1e-4);
+}
+
+TEST_CASE("the fast step matches the reference step with body force, damping, moving walls and periodic faces") {
+  const int dim = GENERATE(2, 3);
+  deck::Method method;
+  method.precision = GENERATE(deck::Precision::f64, deck::Precision::f32);
+  method.transfer = GENERATE(deck::Transfer::flip, deck::Transfer::apic);
+  method.basis = GENERATE(deck::Basis::linear, deck::Basis::quadratic, deck::Basis::cubic);
+  const auto kind = GENERATE(deck::ContactKind::slip, deck::ContactKind::no_slip, deck::ContactKind::friction);
+  CAPTURE(dim, int(method.precision), int(method.transfer), int(method.basis), int(kind));
+  check_step(driven(busy_scene(dim, method, water(2.0), sand(), kind)), 1e-4);
+  check_step(periodic_scene(dim, method, water(2.0), sand(), kind), 1e-4);
+}
+
+TEST_CASE("forces on a wall are the momentum that it gives") {
+  const int dim = GENERATE(2, 3);
+  deck::Method method;
+  method.transfer = GENERATE(deck::Transfer::flip, deck::Transfer::apic);
+  method.basis = GENERATE(deck::Basis::linear, deck::Basis::quadratic, deck::Basis::cubic);
+  const auto kind = GENERATE(deck::ContactKind::slip, deck::ContactKind::no_slip, deck::ContactKind::separate, deck::ContactKind::friction);
+  CAPTURE(dim, int(method.transfer), int(method.basis), int(kind));
+  Model model = driven(busy_scene(dim, method, water(2.0), sand(), kind));
+  model.obstacles.clear(), model.bodies.resize(1);
+  model.cells = {16, 16, dim == 3 ? 12 : 1};
+  model.bodies[0] = jittered_body("pool", water(2.0), dim, {4, 0, 4}, {11, 5, 8}, model.cell_size, 0, 0.8, 0);
+  const auto solver = make_solver(model, Backend::cpu);
+  solver->record_forces(true);
+  const double dt = 1e-4;
+  for (int k = 0; k < 3; ++k) solver->step(dt);
+  ReferenceState<double> state = state_of(model, arrays_of(*solver));
+  solver->step(dt);
+  const auto report = reference_step(model, state, dt, 3 * dt);
+  const Point force = solver->forces().face[2];
+  double size = 0;
+  for (int c = 0; c < dim; ++c) size = std::max(size, std::abs(force[std::size_t(c)]));
+  REQUIRE(size > 0);
+  for (int c = 0; c < dim; ++c)
+    CHECK(force[std::size_t(c)] == Approx(report.face_impulse[2][c] * (1 / dt + model.method.damping)).margin(1e-11 * size));
 }
 
 TEST_CASE("a slope that meets a face of the domain does not push material out of it") {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <random>
 
+#include "fields/body_force.hpp"
 #include "scene/model.hpp"
 
 namespace jaxmpm {
@@ -88,6 +89,33 @@ inline Model busy_scene(int dim, const deck::Method& method, const deck::Materia
   model.obstacles.push_back(tilted_ground(dim, dim == 2 ? Point{13, 3, 0} : Point{8, 4, 2},
                                           kind == deck::ContactKind::slip ? deck::ContactKind::friction : kind, 0.3));
   return model;
+}
+
+/// A scene with a body force over space and time, damping, and walls that move where they hold what touches them.
+inline Model driven(Model model) {
+  const std::vector<deck::Formula> force{"300*sin(50*x)*cos(700*t)", "A*y*x - 100*t", 5.0};
+  model.body_force = std::make_shared<const BodyForce>(std::vector<deck::Formula>(force.begin(), force.begin() + model.dim), model.dim,
+                                                       std::map<std::string, double>{{"A", 40}});
+  model.method.damping = 200;
+  for (std::size_t f = 0; f < 6; ++f)
+    if (model.faces[f].kind == deck::ContactKind::no_slip || model.faces[f].kind == deck::ContactKind::friction)
+      for (std::size_t c = 0; c < std::size_t(model.dim); ++c)
+        if (c != f / 2) model.faces[f].velocity[c] = 0.3 + 0.1 * double(f) - 0.2 * double(c);
+  return model;
+}
+
+/// The same without ends along x, in 3D along z too: one body around the faces, one on it.
+inline Model periodic_scene(int dim, const deck::Method& method, const deck::Material& first, const deck::Material& second,
+                            deck::ContactKind kind) {
+  Model model = busy_scene(dim, method, first, second, kind);
+  model.cells = dim == 2 ? std::array<int, 3>{16, 19, 1} : std::array<int, 3>{8, 9, 12};
+  for (std::size_t f : {0, 1, 4, 5})
+    if (f < 2 || dim == 3) model.faces[f] = {deck::ContactKind::periodic, {}, {}, 0, {}};
+  const Point top{double(model.cells[0]), 4, double(model.cells[2])};
+  model.bodies[0] = jittered_body("one", first, dim, {0, 0, 0}, top, model.cell_size, 0, 0.8, 500);
+  model.bodies[1] = jittered_body("two", second, dim, {2, 4, 2}, {5, 6, 5}, model.cell_size, 100000, 0.8, 500);
+  model.obstacles[0] = tilted_ground(dim, {6, 1, 2}, kind == deck::ContactKind::slip ? deck::ContactKind::friction : kind, 0.3);
+  return driven(model);
 }
 
 }  // namespace jaxmpm

@@ -7,7 +7,7 @@ namespace jaxmpm {
 
 template <class T, int Dim>
 struct AdjointKernels {
-  Vector<T, Dim> (*update_nodes)(const T* raw, T mass_cut_off, T* own) = nullptr;
+  Vector<T, Dim> (*update_nodes)(const T* raw, const GridConstants<T, Dim>&, T* own) = nullptr;
   /// Adjoint of g2p: `grid` holds the velocities of all blocks, `arena` receives the derivatives by the nodes that the tile saw.
   void (*g2p)(const Particles<T, Dim>&, const Tile&, const Blocks<Dim>&, const T* grid, const MaterialAdjoint<T, Dim>&,
               const StepConstants<T>&, const Index<Dim>& origin, T* arena, Particles<T, Dim>& bar, AdjointReport&) = nullptr;

@@ -130,7 +130,7 @@ struct WallNodes {
   JAXMPM_FUNCTION void update(std::size_t b, int own) const {
     const int* neighbours = table.neighbour + b * around;
     const Node first = first_node<Dim>(table.index[b]);
-    const WallSums<T, Dim> raw{neighbours, table.wall_slot, table.raw, planes, first, constants.gravity_step};
+    const WallSums<T, Dim> raw{neighbours, table.wall_slot, table.raw, planes, first, constants, nullptr};
     const Node node = node_of<Dim>(first, own);
     const NodeStanding at = standing<T, Dim>(table.walls, node);
     const bool recorded = table.recording() && at.inside;
