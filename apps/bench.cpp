@@ -50,18 +50,19 @@ class FinalPositions : public Observer {
   SnapshotGradient seen_;
 };
 
-/// The gradient of the first `dt.size()` steps, within the deck's memory: the second of two, as most of an inversion's, since the first one
-/// also pays for memory that no one has touched before.
-nlohmann::ordered_json bench_gradient(const Model& model, const std::string& memory, std::vector<double> dt, double plain_seconds) {
+/// The gradient of the first `dt.size()` steps, within the deck's memory and disk: the second of two, as most of an inversion's, since the
+/// first one also pays for memory that no one has touched before.
+nlohmann::ordered_json bench_gradient(const Model& model, const deck::Deck& deck, std::vector<double> dt, double plain_seconds) {
   double end = 0;
   for (const double step : dt) end += step;
   FinalPositions observer(end);
   const StepSequence steps{dt, {dt.size()}};
-  SnapshotPool pool;
-  const MemoryPlan plan = plan_gradient(model, steps, bytes_of(memory), pool);
+  SnapshotStack snapshots(deck.output.directory);
+  const Room room = room_of(deck.inverse.empty() ? deck::Inverse{} : deck::inverse_of(deck));
+  const MemoryPlan plan = plan_gradient(model, steps, room, snapshots);
   RunCost first, cost;
-  differentiate_run(model, steps, observer, plan, pool, first, {});
-  differentiate_run(model, steps, observer, plan, pool, cost, {});
+  differentiate_run(model, steps, observer, plan, snapshots, first, {});
+  differentiate_run(model, steps, observer, plan, snapshots, cost, {});
   const double seconds = cost.forward_seconds + cost.reverse_seconds;
   return {{"forward_seconds", cost.forward_seconds},
           {"reverse_seconds", cost.reverse_seconds},
@@ -71,7 +72,11 @@ nlohmann::ordered_json bench_gradient(const Model& model, const std::string& mem
           {"snapshots", plan.snapshots},
           {"recomputed_steps", plan.recomputed_steps},
           {"predicted_peak_bytes", plan.peak_bytes},
-          {"measured_peak_bytes", cost.measured_peak_bytes}};
+          {"measured_peak_bytes", cost.measured_peak_bytes},
+          {"snapshots_on_disk", plan.on_disk},
+          {"disk_bytes", plan.disk_bytes},
+          {"written_bytes", cost.written_bytes},
+          {"read_bytes", cost.read_bytes}};
 }
 
 PhaseSeconds operator-(const PhaseSeconds& a, const PhaseSeconds& b) {
@@ -100,8 +105,7 @@ nlohmann::ordered_json measure(const BenchOptions& options) {
   solver.reset();
   dt.insert(dt.end(), measured.begin(), measured.end());
   dt.resize(options.steps);
-  result["gradient"] =
-      bench_gradient(model, deck.inverse.empty() ? deck::Inverse{}.memory : deck::inverse_of(deck).memory, std::move(dt), seconds);
+  result["gradient"] = bench_gradient(model, deck, std::move(dt), seconds);
   return result;
 }
 

@@ -61,10 +61,16 @@ void describe_stopping(Description<T>& d) {
   d.optional("tolerance", &T::tolerance).above(0).below(1).word("none").help("Ends when the loss falls by less than this part of itself.");
 }
 
-void check_memory(const Inverse& inverse, const Place& place) {
+bool is_amount(const std::string& text) {
   static const std::regex pattern("[0-9]{1,9}(\\.[0-9]{1,9})? ?(MiB|GiB|TiB)");
-  if (!std::regex_match(inverse.memory, pattern))
+  return std::regex_match(text, pattern);
+}
+
+void check_room(const Inverse& inverse, const Place& place) {
+  if (!is_amount(inverse.memory))
     place.problem("memory", "expected an amount such as \"4 GiB\" (MiB, GiB or TiB), found \"" + inverse.memory + "\"");
+  if (inverse.disk != "none" && !is_amount(inverse.disk))
+    place.problem("disk", "expected \"none\" or an amount such as \"50 GiB\" (MiB, GiB or TiB), found \"" + inverse.disk + "\"");
 }
 
 }  // namespace
@@ -164,7 +170,9 @@ void describe(Description<Inverse>& d) {
   d.required("observations", &Inverse::observations).items(1);
   d.optional("optimizer", &Inverse::optimizer).otherwise("adam with its own defaults").help("Chosen by `method`.");
   d.optional("memory", &Inverse::memory).help("For checkpoints of the gradient: a number and MiB, GiB or TiB.");
-  d.check({"memory"}, check_memory);
+  d.optional("disk", &Inverse::disk)
+      .help("\"none\", or room for more checkpoints in the output directory, once memory is full: a number and MiB, GiB or TiB.");
+  d.check({"memory", "disk"}, check_room);
 }
 
 namespace {

@@ -77,7 +77,7 @@ struct Inverse {
   std::vector<Unknown> unknowns;
   std::vector<Observation> observations;
   Optimizer optimizer;
-  std::string memory = "4 GiB";
+  std::string memory = "4 GiB", disk = "none";
 };
 
 /// The deck's /inverse, which reading the deck has checked. Throws DeckError when it has none.

@@ -57,20 +57,17 @@ class Walk {
 /// The reverse run: a stack of kept states, the newest below the step that is reversed next.
 class Reversal {
  public:
-  Reversal(ReversibleSolver& solver, const StepSequence& steps, Observer& observer, std::size_t snapshots, SnapshotPool& pool,
+  Reversal(ReversibleSolver& solver, const StepSequence& steps, Observer& observer, const MemoryPlan& plan, SnapshotStack& stack,
            const std::function<bool()>& stop)
       : solver_(solver),
         steps_(steps),
         observer_(observer),
         stop_(stop),
         walk_(solver.forward(), steps, observer, stop),
-        snapshots_(snapshots),
-        pool_(pool) {
-    pool_.prepare(solver.kept_bytes(), snapshots);
+        snapshots_(plan.snapshots),
+        numbers_(stack) {
+    numbers_.prepare(solver.kept_bytes(), plan.snapshots - plan.on_disk, plan.on_disk);
     keep(0);
-  }
-  ~Reversal() {
-    while (!kept_.empty()) forget();
   }
 
   ModelGradient run(RunCost& cost) {
@@ -102,21 +99,19 @@ class Reversal {
  private:
   struct Snapshot {
     std::size_t state;
-    std::byte* numbers;
     std::unique_ptr<KeptState> rest;
   };
   static constexpr std::size_t lost = ~std::size_t(0);
 
   void keep(std::size_t state) {
-    kept_.push_back({state, pool_.take(), nullptr});
-    kept_.back().rest = solver_.keep(kept_.back().numbers);
+    kept_.push_back({state, solver_.keep(numbers_.push())});
     present_ = state;
   }
   void forget() {
-    pool_.give_back(kept_.back().numbers);
+    numbers_.pop();
     kept_.pop_back();
   }
-  void go_back() { solver_.go_back(*kept_.back().rest, kept_.back().numbers); }
+  void go_back() { solver_.go_back(*kept_.back().rest, numbers_.top()); }
   void go_to(std::size_t state) {
     if (present_ != state) go_back();
     present_ = lost;  // it is about to move on
@@ -148,9 +143,32 @@ class Reversal {
   const std::function<bool()>& stop_;
   Walk walk_;
   std::size_t snapshots_, present_ = 0;
-  SnapshotPool& pool_;
   std::vector<Snapshot> kept_;
+  SnapshotStack& numbers_;  // of kept_
 };
+
+/// How many snapshots are kept where.
+struct Split {
+  std::size_t in_memory, on_disk;
+  std::size_t all() const { return in_memory + on_disk; }
+};
+
+/// As many snapshots as there is room for, `wanted` at most, and no more of them on disk than that takes. What states share stays in
+/// memory; for those on disk that may take half of the room, so that the newest snapshots, which come and go, need not go through the disk.
+Split split_snapshots(const ReversibleSolver& solver, std::size_t wanted, const Room& room) {
+  const std::size_t numbers = solver.kept_bytes(), shared = solver.shared_bytes();
+  const auto beside = [&](std::size_t on_disk) {
+    const std::size_t taken = on_disk * shared;
+    return room.memory > taken ? (room.memory - taken) / (numbers + shared) : 0;
+  };
+  Split split{beside(0), 0};
+  const auto allowed = [&](std::size_t on_disk) {
+    return on_disk * numbers <= room.disk && 2 * on_disk * shared <= room.memory && beside(on_disk) > 0;
+  };
+  while (split.all() < wanted && allowed(split.on_disk + 1)) split.in_memory = beside(++split.on_disk);
+  split.in_memory = std::min(split.in_memory, wanted - split.on_disk);
+  return split;
+}
 
 /// The next moment of a run that also meets the observer's times.
 Moment next_moment(const TimeControl& control, const Moment& now, double stable, double look) {
@@ -190,34 +208,38 @@ void replay_run(const Model& model, const StepSequence& steps, Observer& observe
   Walk(solver->forward(), steps, observer, stop).advance(0, steps.dt.size());
 }
 
-MemoryPlan plan_gradient(const Model& model, const StepSequence& steps, std::size_t memory_bytes, const SnapshotPool& pool) {
+MemoryPlan plan_gradient(const Model& model, const StepSequence& steps, const Room& room, const SnapshotStack& stack) {
   const std::unique_ptr<ReversibleSolver> solver = make_reversible_solver(model);
+  if (!steps.dt.empty()) solver->start_reverse(), solver->step_adjoint(steps.dt[0]);  // it has all its memory then
   MemoryPlan plan;
   plan.steps = steps.dt.size();
   plan.snapshot_bytes = solver->kept_bytes() + solver->shared_bytes();
-  // Besides snapshots: the program as it stands (with this stepper in it, less the pool's memory), and the derivatives, as large as a
-  // state.
+  // Besides snapshots: the program as it stands, with this stepper in it and less the stack's memory, and what the observer sees, the
+  // gradient, and blocks that the material has yet to reach: less than four states, as measured.
   const std::size_t resident = resident_bytes();
-  const std::size_t fixed = resident - std::min(pool.bytes(), resident) + 2 * plan.snapshot_bytes;
-  const std::size_t fitting = memory_bytes > fixed ? (memory_bytes - fixed) / plan.snapshot_bytes : 0;
+  const std::size_t fixed = resident - std::min(stack.memory_bytes(), resident) + 4 * plan.snapshot_bytes;
   constexpr std::size_t least = 2;
-  if (fitting < least && plan.steps > 1)
+  const std::size_t wanted = std::max<std::size_t>(plan.steps, 1);
+  const Split split = split_snapshots(*solver, wanted, {room.memory - std::min(fixed, room.memory), room.disk});
+  if (split.all() < least && plan.steps > 1)
     throw Error(ExitCode::deck,
                 fmt::format("/inverse/memory: {:.1f} MiB are too few: a reverse run of this scene takes {:.1f} MiB and at least "
                             "{} snapshots of {:.2f} MiB; give it {:.0f} MiB or more",
-                            double(memory_bytes) / 1048576, double(fixed) / 1048576, least, double(plan.snapshot_bytes) / 1048576,
+                            double(room.memory) / 1048576, double(fixed) / 1048576, least, double(plan.snapshot_bytes) / 1048576,
                             std::ceil(double(fixed + least * plan.snapshot_bytes) / 1048576)));
-  plan.snapshots = std::min(std::max(fitting, least), std::max<std::size_t>(plan.steps, 1));
-  plan.peak_bytes = fixed + plan.snapshots * plan.snapshot_bytes;
+  plan.snapshots = std::max<std::size_t>(split.all(), 1), plan.on_disk = split.on_disk;
+  plan.disk_bytes = plan.on_disk * solver->kept_bytes();
+  plan.peak_bytes = fixed + plan.snapshots * plan.snapshot_bytes - plan.disk_bytes;
   plan.recomputed_steps = plan.steps > 1 ? recomputed_steps(plan.steps, plan.snapshots) : 0;
   return plan;
 }
 
 ModelGradient differentiate_run(const Model& model, const StepSequence& steps, Observer& observer, const MemoryPlan& plan,
-                                SnapshotPool& pool, RunCost& cost, const std::function<bool()>& stop) {
+                                SnapshotStack& stack, RunCost& cost, const std::function<bool()>& stop) {
   const std::unique_ptr<ReversibleSolver> solver = make_reversible_solver(model);
-  ModelGradient gradient = Reversal(*solver, steps, observer, plan.snapshots, pool, stop).run(cost);
+  ModelGradient gradient = Reversal(*solver, steps, observer, plan, stack, stop).run(cost);
   cost.measured_peak_bytes = peak_memory_bytes();
+  cost.written_bytes = stack.file().written_bytes(), cost.read_bytes = stack.file().read_bytes();
   return gradient;
 }
 

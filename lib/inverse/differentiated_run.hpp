@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "inverse/observer.hpp"
-#include "inverse/snapshot_pool.hpp"
+#include "inverse/snapshot_stack.hpp"
 
 namespace jaxmpm {
 
@@ -14,16 +14,22 @@ struct StepSequence {
   std::vector<std::size_t> looks;  // [time of the observer] number of steps done
 };
 
+/// What a gradient may take up, bytes.
+struct Room {
+  std::size_t memory = 0, disk = 0;
+};
+
 /// What a gradient costs, known before it starts.
 struct MemoryPlan {
-  std::size_t steps = 0, snapshots = 0;  // snapshots kept at once, in memory and on disk
-  std::size_t snapshot_bytes = 0, peak_bytes = 0;
+  std::size_t steps = 0, snapshots = 0, on_disk = 0;  // snapshots kept at once, those on disk included
+  std::size_t snapshot_bytes = 0, peak_bytes = 0, disk_bytes = 0;
   double recomputed_steps = 0;  // forward steps besides the first pass
 };
 
 struct RunCost {
   double forward_seconds = 0, reverse_seconds = 0;  // first pass; the rest, recomputation included
   std::size_t measured_peak_bytes = 0;              // of what the schedule kept
+  std::size_t written_bytes = 0, read_bytes = 0;    // to and from the disk
   std::size_t particles_at_kinks = 0;               // particle-steps within round-off of a branch
 };
 
@@ -34,13 +40,15 @@ StepSequence record_run(const Model& model, Observer& observer, const std::funct
 /// The same with given steps: exactly these, whatever the state would choose.
 void replay_run(const Model& model, const StepSequence& steps, Observer& observer, const std::function<bool()>& stop);
 
-/// Plan of a gradient within `memory_bytes`, of which `pool` may hold some already. Throws Error (exit 2) when not even one snapshot fits.
-MemoryPlan plan_gradient(const Model& model, const StepSequence& steps, std::size_t memory_bytes, const SnapshotPool& pool);
+/// Plan of a gradient within `room`, of whose memory `stack` may hold some already: snapshots go to the disk when memory has no room for
+/// all. Throws Error (exit 2) when memory is too small for any plan.
+MemoryPlan plan_gradient(const Model& model, const StepSequence& steps, const Room& room, const SnapshotStack& stack);
 
 /// Loss (through the observer) and its gradient by the model. Branches (contact, return mapping, clamps) are differentiated as taken, dt is
-/// held constant. The bits depend neither on the plan nor on the number of threads. `pool` serves gradient after gradient.
+/// held constant. The bits depend neither on the plan nor on the number of threads. `stack` serves gradient after gradient. Throws IoError
+/// where the disk fails.
 ModelGradient differentiate_run(const Model& model, const StepSequence& steps, Observer& observer, const MemoryPlan& plan,
-                                SnapshotPool& pool, RunCost& cost, const std::function<bool()>& stop);
+                                SnapshotStack& stack, RunCost& cost, const std::function<bool()>& stop);
 
 /// Thrown by the functions above when `stop` says so.
 struct Stopped {};

@@ -189,7 +189,7 @@ std::vector<RecordedEvaluation> InversionDirectory::read(const deck::Deck& deck,
     throw IoError("'" + h5() + "' is no inversion of format " + std::to_string(inversion_format) +
                   "; resume with the version of jaxmpm that wrote it.");
   require_same_deck(file.text("/deck_resolved"), deck.resolved, h5(),
-                    {"/output", "/inverse/memory", "/inverse/optimizer/iterations", "/inverse/optimizer/tolerance"});
+                    {"/output", "/inverse/memory", "/inverse/disk", "/inverse/optimizer/iterations", "/inverse/optimizer/tolerance"});
   return read_evaluations(file, unknowns.size());
 }
 

@@ -32,7 +32,7 @@ class InversionDirectory {
   /// Writes all files, each whole or not at all: velocities of particles, inversion.h5, inversion.json. Throws IoError.
   void write(const InversionState& state) const;
   /// Evaluations of the inversion that is there; none where there is no inversion. Throws IoError when it is damaged, DeckError when it is
-  /// of another deck (what may differ: /output, /inverse/memory, and the optimiser's iterations and tolerance).
+  /// of another deck (what may differ: /output, /inverse/memory and disk, and the optimiser's iterations and tolerance).
   std::vector<RecordedEvaluation> read(const deck::Deck& deck, const Unknowns& unknowns) const;
 
  private:

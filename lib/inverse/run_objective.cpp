@@ -20,8 +20,7 @@ class Watch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-}  // namespace
-
+/// Bytes of an amount as the deck gives it: "4 GiB".
 std::size_t bytes_of(const std::string& amount) {
   std::size_t end = 0;
   const double number = std::stod(amount, &end);
@@ -29,11 +28,18 @@ std::size_t bytes_of(const std::string& amount) {
   return static_cast<std::size_t>(std::ldexp(number, unit == "MiB" ? 20 : unit == "GiB" ? 30 : 40));
 }
 
+constexpr double mib = 1 << 20;
+
+}  // namespace
+
+Room room_of(const deck::Inverse& inverse) { return {bytes_of(inverse.memory), inverse.disk == "none" ? 0 : bytes_of(inverse.disk)}; }
+
 RunObjective::RunObjective(const deck::Deck& deck, std::vector<std::string> pointers, std::function<bool()> stop)
     : deck_(with_values(deck, {})),
       pointers_(std::move(pointers)),
-      memory_(bytes_of(deck::inverse_of(deck).memory)),
-      stop_(std::move(stop)) {
+      room_(room_of(deck::inverse_of(deck))),
+      stop_(std::move(stop)),
+      snapshots_(deck.output.directory) {
   const Model model = build_model(deck);
   for (const std::string& notice : model.notices) spdlog::info("Note: {}", notice);
   observer_ = make_observer(deck, model);
@@ -52,10 +58,12 @@ Evaluation RunObjective::loss(const Values& values) {
 Evaluation RunObjective::gradient(const Values& values) {
   const deck::Deck deck = with_values(deck_, values);
   const Model model = build_model(deck, values);
-  const MemoryPlan plan = plan_gradient(model, steps_, memory_, pool_);
-  tell_plan(plan);
+  const MemoryPlan plan = plan_gradient(model, steps_, room_, snapshots_);
+  if (!told_) tell_plan(plan);
   RunCost cost;
-  const ModelGradient by_model = differentiate_run(model, steps_, *observer_, plan, pool_, cost, stop_);
+  const ModelGradient by_model = differentiate_run(model, steps_, *observer_, plan, snapshots_, cost, stop_);
+  if (!told_ && plan.on_disk > 0) tell_disk(cost);
+  told_ = true;
   const Watch watch;
   Evaluation found;
   found.loss = observer_->loss();
@@ -85,15 +93,19 @@ bool RunObjective::admits(const Values& values) const {
   }
 }
 
-void RunObjective::tell_plan(const MemoryPlan& plan) {
-  if (plan_told_) return;
-  plan_told_ = true;
-  constexpr double mib = 1 << 20;
+void RunObjective::tell_plan(const MemoryPlan& plan) const {
+  const std::string disk =
+      plan.on_disk > 0 ? fmt::format(", {} of them on disk ({:.4g} MiB)", plan.on_disk, static_cast<double>(plan.disk_bytes) / mib) : "";
   spdlog::info(
-      "Gradient of {} steps: {} snapshots of {:.3g} MiB kept at once, {:.3g} steps computed again; predicted peak {:.4g} MiB of {:.4g} "
+      "Gradient of {} steps: {} snapshots of {:.3g} MiB kept at once{}, {:.3g} steps computed again; predicted peak {:.4g} MiB of {:.4g} "
       "MiB.",
-      plan.steps, plan.snapshots, static_cast<double>(plan.snapshot_bytes) / mib, plan.recomputed_steps,
-      static_cast<double>(plan.peak_bytes) / mib, static_cast<double>(memory_) / mib);
+      plan.steps, plan.snapshots, static_cast<double>(plan.snapshot_bytes) / mib, disk, plan.recomputed_steps,
+      static_cast<double>(plan.peak_bytes) / mib, static_cast<double>(room_.memory) / mib);
+}
+
+void RunObjective::tell_disk(const RunCost& cost) const {
+  spdlog::info("Snapshots on disk: {:.4g} MiB written, {:.4g} MiB read.", static_cast<double>(cost.written_bytes) / mib,
+               static_cast<double>(cost.read_bytes) / mib);
 }
 
 }  // namespace jaxmpm

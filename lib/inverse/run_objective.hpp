@@ -21,19 +21,20 @@ class RunObjective : public Objective {
   bool admits(const Values& values) const override;
 
  private:
-  void tell_plan(const MemoryPlan& plan);
+  void tell_plan(const MemoryPlan& plan) const;
+  void tell_disk(const RunCost& cost) const;
 
   deck::Deck deck_;  // without /inverse
   std::vector<std::string> pointers_;
-  std::size_t memory_;  // bytes, of the schedule
+  Room room_;  // of the schedule
   std::function<bool()> stop_;
   std::unique_ptr<Observer> observer_;
   StepSequence steps_;
-  SnapshotPool pool_;
-  bool plan_told_ = false;
+  SnapshotStack snapshots_;
+  bool told_ = false;  // what a gradient takes
 };
 
-/// Bytes of an amount as /inverse/memory gives it: "4 GiB".
-std::size_t bytes_of(const std::string& amount);
+/// What /inverse/memory and /inverse/disk give to a gradient.
+Room room_of(const deck::Inverse& inverse);
 
 }  // namespace jaxmpm

@@ -58,6 +58,11 @@ ReversibleStep<T, Dim>::ReversibleStep(const Model& model)
       adjoint_(with_spline(model.method.basis,
                            [&](auto nodes) { return adjoint_kernels<T, Dim, nodes>(model.method.transfer, model.method.gradient); })),
       grid_adjoint_(this->model_, this->kernels_, adjoint_, this->grid_) {
+  for (const Particles<T, Dim>& p : this->bodies_) {
+    Array<T>& mass = mass_.emplace_back(p.count());
+    const std::uint32_t first = p.first_id();
+    for (std::size_t a = 0; a < p.count(); ++a) mass[p.id[a] - first] = p.mass[a];
+  }
   for (const Body& body : model.bodies) material_adjoints_.push_back(make_material_adjoint<T, Dim>(body.material));
 }
 
@@ -128,7 +133,7 @@ std::size_t ReversibleStep<T, Dim>::kept_bytes() const {
 template <class T, int Dim>
 std::size_t ReversibleStep<T, Dim>::shared_bytes() const {
   std::size_t bytes = this->blocks_.tiles.size() * (sizeof(Tile) + sizeof(std::int64_t));
-  for (const Particles<T, Dim>& p : this->bodies_) bytes += p.count() * (sizeof(T) + sizeof(std::uint32_t));
+  for (const Particles<T, Dim>& p : this->bodies_) bytes += p.count() * sizeof(std::uint32_t);
   return bytes;
 }
 
@@ -136,7 +141,7 @@ template <class T, int Dim>
 auto ReversibleStep<T, Dim>::present_epoch() -> std::shared_ptr<const Epoch> {
   if (epoch_sorts_ == this->sorts_) return epoch_;
   auto epoch = std::make_shared<Epoch>();
-  for (const Particles<T, Dim>& p : this->bodies_) epoch->mass.push_back(p.mass), epoch->id.push_back(p.id);
+  for (const Particles<T, Dim>& p : this->bodies_) epoch->id.push_back(p.id);
   epoch->tiles = this->blocks_.tiles, epoch->tile_key = this->tile_key_;
   epoch_ = std::move(epoch), epoch_sorts_ = this->sorts_;
   return epoch_;
@@ -161,7 +166,12 @@ void ReversibleStep<T, Dim>::go_back(const KeptState& state, const std::byte* nu
   this->numbers_ = kept.numbers;
   if (kept.epoch == epoch_ && epoch_sorts_ == this->sorts_) return;
   epoch_ = kept.epoch, epoch_sorts_ = this->sorts_;
-  for (std::size_t b = 0; b < this->bodies_.size(); ++b) this->bodies_[b].mass = epoch_->mass[b], this->bodies_[b].id = epoch_->id[b];
+  for (std::size_t b = 0; b < this->bodies_.size(); ++b) {
+    Particles<T, Dim>& p = this->bodies_[b];
+    p.id = epoch_->id[b];
+    const std::uint32_t first = p.first_id();
+    for (std::size_t a = 0; a < p.count(); ++a) p.mass[a] = mass_[b][p.id[a] - first];
+  }
   this->blocks_.tiles = epoch_->tiles, this->tile_key_ = epoch_->tile_key;
   this->rebuild_blocks();
 }

@@ -31,8 +31,7 @@ class ReversibleStep final : public ExplicitStep<T, Dim>, public ReversibleSolve
   using Orders = std::vector<std::vector<std::uint32_t>>;
   /// What stays the same from sort to sort.
   struct Epoch {
-    std::vector<Array<T>> mass;  // [body]
-    std::vector<Array<std::uint32_t>> id;
+    std::vector<Array<std::uint32_t>> id;  // [body]
     std::vector<Tile> tiles;
     std::vector<std::int64_t> tile_key;
   };
@@ -54,6 +53,7 @@ class ReversibleStep final : public ExplicitStep<T, Dim>, public ReversibleSolve
   AdjointKernels<T, Dim> adjoint_;
   std::vector<std::unique_ptr<MaterialAdjoint<T, Dim>>> material_adjoints_;
   GridAdjoint<T, Dim> grid_adjoint_;
+  std::vector<Array<T>> mass_;                     // [body][id less the first]
   std::shared_ptr<const Epoch> epoch_;             // of the present state, unless it has been sorted since:
   std::uint64_t epoch_sorts_ = ~std::uint64_t(0);  // sorts_ when it was
   std::vector<Particles<T, Dim>> bars_;            // derivatives by the particles' fields, in storage order

@@ -99,7 +99,7 @@ inline const char* const full_deck = R"({
       { "kind": "gauge", "gauge": "front", "file": "g.csv", "weight": 2, "noise": { "deviation": 0.1, "seed": 2 }, "mask": "good" },
       { "kind": "profile", "body": "heap", "file": "p.csv", "time": 0.5, "mask": { "box": { "min": [0, 0, 0], "max": [1, 1, 1] } } } ],
     "optimizer": { "method": "lbfgs", "iterations": 30, "memory": 5, "tolerance": 1e-4 },
-    "memory": "2 GiB" }
+    "memory": "2 GiB", "disk": "10 GiB" }
 }
 )";
 

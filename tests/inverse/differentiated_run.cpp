@@ -1,4 +1,4 @@
-// Gradients of whole runs against central differences, and what they must not depend on: the memory budget.
+// Gradients of whole runs against central differences, and what they must not depend on: the budget of memory and disk.
 #include "inverse/differentiated_run.hpp"
 
 #include <catch2/catch.hpp>
@@ -66,12 +66,13 @@ Model scene(int dim, deck::Transfer transfer, const deck::Material& first, const
   return model;
 }
 
-ModelGradient gradient_of(const Model& model, const StepSequence& steps, Observer& observer, std::size_t snapshots) {
+ModelGradient gradient_of(const Model& model, const StepSequence& steps, Observer& observer, std::size_t snapshots,
+                          std::size_t on_disk = 0) {
   MemoryPlan plan;
-  plan.steps = steps.dt.size(), plan.snapshots = snapshots;
+  plan.steps = steps.dt.size(), plan.snapshots = snapshots, plan.on_disk = on_disk;
   RunCost cost;
-  SnapshotPool pool;
-  return differentiate_run(model, steps, observer, plan, pool, cost, {});
+  SnapshotStack stack;
+  return differentiate_run(model, steps, observer, plan, stack, cost, {});
 }
 
 /// Central difference of the loss by a number of the model, over the same steps, and what round-off leaves uncertain of it.
@@ -181,7 +182,7 @@ TEST_CASE("gradients of a run that sorts its particles on the way agree with cen
         steps, observer);
 }
 
-TEST_CASE("a gradient has the same bits whatever memory it is given") {
+TEST_CASE("a gradient has the same bits whatever memory and disk it is given") {
   Model model = scene(2, deck::Transfer::apic, water(), sand(), deck::ContactKind::friction);
   model.time.step = {};
   model.time.cfl = 0.5;
@@ -189,8 +190,12 @@ TEST_CASE("a gradient has the same bits whatever memory it is given") {
   const StepSequence steps = record_run(model, observer, {});
   REQUIRE(steps.dt.size() > 30);
   const ModelGradient whole = gradient_of(model, steps, observer, steps.dt.size());
-  for (const std::size_t snapshots : {2, 3, 5, 11}) {
-    const ModelGradient part = gradient_of(model, steps, observer, snapshots);
+  struct Case {
+    std::size_t snapshots, on_disk;
+  };
+  for (const Case c : {Case{2, 0}, {3, 0}, {5, 0}, {11, 0}, {2, 1}, {5, 4}, {11, 3}, {steps.dt.size(), 20}}) {
+    INFO(c.snapshots << " snapshots, " << c.on_disk << " of them on disk");
+    const ModelGradient part = gradient_of(model, steps, observer, c.snapshots, c.on_disk);
     CHECK(part.gravity == whole.gravity);
     CHECK(part.coefficient == whole.coefficient);
     CHECK(part.bodies[0].material == whole.bodies[0].material);

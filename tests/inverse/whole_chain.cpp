@@ -49,10 +49,10 @@ TEST_CASE("the loss of a deck's observations by numbers of the deck") {
   const auto observer = make_observer(deck, model);
   const StepSequence steps = record_run(model, *observer, {});
   CHECK(steps.dt.size() == 200);
-  SnapshotPool pool;
-  MemoryPlan plan = plan_gradient(model, steps, std::size_t(1) << 32, pool);
+  SnapshotStack snapshots;
+  MemoryPlan plan = plan_gradient(model, steps, {std::size_t(1) << 32, 0}, snapshots);
   RunCost cost;
-  const ModelGradient gradient = differentiate_run(model, steps, *observer, plan, pool, cost, {});
+  const ModelGradient gradient = differentiate_run(model, steps, *observer, plan, snapshots, cost, {});
   CHECK(observer->loss() > 0);
 
   const std::vector<std::string> pointers{"/gravity/1",

@@ -1,12 +1,10 @@
 // Files appear whole or not at all; errors give path and reason.
 #include "io/files.hpp"
 
-#include <sys/resource.h>
-
 #include <catch2/catch.hpp>
-#include <csignal>
 #include <filesystem>
 
+#include "full_disk.hpp"
 #include "io/hdf5.hpp"
 #include "scratch.hpp"
 
@@ -14,21 +12,6 @@ using namespace jaxmpm;
 namespace fs = std::filesystem;
 
 namespace {
-
-/// Lets no file grow beyond a size, as a full disk would.
-class FullDisk {
- public:
-  explicit FullDisk(rlim_t bytes) {
-    std::signal(SIGXFSZ, SIG_IGN);
-    getrlimit(RLIMIT_FSIZE, &before_);
-    const rlimit limit{bytes, before_.rlim_max};
-    setrlimit(RLIMIT_FSIZE, &limit);
-  }
-  ~FullDisk() { setrlimit(RLIMIT_FSIZE, &before_); }
-
- private:
-  rlimit before_{};
-};
 
 template <class Call>
 std::string message_of(const Call& call) {
@@ -55,7 +38,7 @@ TEST_CASE("a full disk leaves the old file and nothing half-written") {
   const testing::Scratch scratch;
   const std::string path = scratch / "a.txt";
   write_file(path, "old");
-  const FullDisk full(1000);
+  const testing::FullDisk full(1000);
   const std::string message = message_of([&] { write_file(path, std::string(100000, 'x')); });
   CHECK(message.find(path) != std::string::npos);
   CHECK(message.find("File too large") != std::string::npos);
@@ -66,7 +49,7 @@ TEST_CASE("a full disk leaves the old file and nothing half-written") {
 TEST_CASE("HDF5 on a full disk gives the system's reason and leaves nothing behind") {
   const testing::Scratch scratch;
   const std::string path = scratch / "a.h5";
-  const FullDisk full(20000);
+  const testing::FullDisk full(20000);
   const std::string message = message_of([&] {
     hdf5::Writer file(path);
     file.dataset("/x", {100000}, std::vector<double>(100000, 1.0));

@@ -2,6 +2,8 @@
 import json
 import os
 import random
+import re
+import resource
 import signal
 import time
 import unittest
@@ -209,6 +211,35 @@ class Invert(InverseTest):
         self.assertNotIn(" 0 steps computed again", found[1].stderr)
         self.assertEqual(found[0].stdout, found[1].stdout)
 
+    def least_memory(self, deck):
+        """What a gradient of the deck needs in any case, as the refusal of less says."""
+        said = self.expect(DECK, "gradient", deck, "--threads", "1", "--set", "/inverse/memory=0.001 MiB")
+        return int(re.search(r"give it (\d+) MiB", said).group(1))
+
+    def test_snapshots_on_disk(self):
+        deck = self.deck(time={"end": 0.1, "step": 2e-4})
+        plenty = self.call("gradient", deck, "--json", "--threads", "1")
+        little = f"/inverse/memory={self.least_memory(deck)} MiB"
+        found = self.call("gradient", deck, "--json", "--threads", "1", "--set", little, "--set", "/inverse/disk=100 MiB")
+        self.assertEqual(found.returncode, DONE, found.stderr)
+        self.assertEqual(found.stdout, plenty.stdout)
+        self.assertIn("of them on disk", found.stderr)
+        self.assertIn("MiB written", found.stderr)
+        again = [float(re.search(r"([\d.e+]+) steps computed again", said).group(1))
+                 for said in (found.stderr, self.call("gradient", deck, "--json", "--threads", "1", "--set", little).stderr)]
+        self.assertLess(again[0], again[1])
+
+    def test_a_disk_that_is_full_loses_nothing(self):
+        deck, full = self.deck(method="lbfgs", iterations=4), 1 << 20
+        self.invert(deck, "whole")
+        self.invert(self.deck("two.json", method="lbfgs", iterations=2), "out")
+        disk = ("--resume", "auto", "--set", f"/inverse/memory={self.least_memory(deck) + 2} MiB", "--set", "/inverse/disk=100 MiB")
+        said = self.invert(deck, "out", *disk, code=IO, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (full, full)))
+        self.assertIn("/inverse/disk", said)
+        self.invert(deck, "out", *disk)
+        self.assertEqual(self.findings("out"), self.findings("whole"))
+        self.assertEqual([path.name for path in (self.scratch / "out").glob("snapshots*")], [])
+
     def test_refusals(self):
         deck = self.deck(method="lbfgs", iterations=3)
         self.invert(deck, "out")
@@ -256,6 +287,18 @@ class Gradient(InverseTest):
         gradient = json.loads(done.stdout)["gradient"]
         self.assertAlmostEqual(gradient["seconds_per_1000_steps"], 20 * (gradient["forward_seconds"] + gradient["reverse_seconds"]))
         self.assertLessEqual(gradient["measured_peak_bytes"], 4 << 30)
+
+    def test_memory_stays_below_the_budget_with_snapshots_on_disk(self):
+        deck, budget = self.write(scene(0.1, 0.05, domain={"min": [0, 0], "max": [1.0, 0.5], "cell_size": 0.01}, inverse=inverse())), 64 << 20
+        done = self.call("bench", deck, "--steps", "200", "--gradient", "--json", "--threads", "1", "--set", "/inverse/memory=64 MiB", "--set", "/inverse/disk=1 GiB")
+        self.assertEqual(done.returncode, DONE, done.stderr)
+        gradient = json.loads(done.stdout)["gradient"]
+        self.assertEqual((gradient["snapshots"], gradient["recomputed_steps"]), (200, 0))
+        self.assertGreater(gradient["snapshots_on_disk"], 0)
+        self.assertEqual(gradient["written_bytes"], gradient["disk_bytes"])  # each is written once
+        self.assertLessEqual(gradient["read_bytes"], gradient["disk_bytes"])
+        self.assertLessEqual(gradient["predicted_peak_bytes"], budget)
+        self.assertLessEqual(gradient["measured_peak_bytes"], gradient["predicted_peak_bytes"])
 
 
 if __name__ == "__main__":

@@ -1,0 +1,45 @@
+#include "inverse/snapshot_stack.hpp"
+
+#include <algorithm>
+
+namespace jaxmpm {
+
+void SnapshotStack::prepare(std::size_t bytes, std::size_t in_memory, std::size_t on_disk) {
+  while (!blocks_.empty()) pop();
+  pool_.prepare(bytes, in_memory);
+  file_.prepare(bytes, on_disk);
+  in_memory_ = in_memory;
+}
+
+std::byte* SnapshotStack::push() {
+  if (size() - first_in_memory_ == in_memory_) spill();
+  blocks_.push_back(pool_.take());
+  return blocks_.back();
+}
+
+void SnapshotStack::spill() {
+  const std::size_t oldest = first_in_memory_;
+  if (oldest == in_file_) {
+    file_.write(oldest, blocks_[oldest]);
+    ++in_file_;
+  }
+  pool_.give_back(blocks_[oldest]);
+  ++first_in_memory_;
+}
+
+const std::byte* SnapshotStack::top() {
+  if (first_in_memory_ == size()) {  // the newest is on the disk, so memory is empty
+    blocks_.back() = pool_.take();
+    --first_in_memory_;
+    file_.read(first_in_memory_, blocks_.back());
+  }
+  return blocks_.back();
+}
+
+void SnapshotStack::pop() {
+  if (first_in_memory_ < size()) pool_.give_back(blocks_.back());
+  blocks_.pop_back();
+  first_in_memory_ = std::min(first_in_memory_, size()), in_file_ = std::min(in_file_, size());
+}
+
+}  // namespace jaxmpm
