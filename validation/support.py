@@ -56,10 +56,7 @@ class Check:
     def command(self, deck, name, assignments=None, *more):
         """The command line that runs a deck of the case's folder, or else of inputs/, into out/validation/CASE/NAME."""
         place = self.folder / deck if (self.folder / deck).is_file() else ROOT / "inputs" / deck
-        words = [str(self.program), "run", str(place), "-o", str(self.out / name), "-q", *more]
-        for pointer, value in (assignments or {}).items():
-            words += ["--set", f"{pointer}={value}"]
-        return words
+        return command_line(self.program, place, self.out / name, assignments, *more)
 
     def run(self, deck, name, assignments=None, *more):
         """Runs a deck into out/validation/CASE/NAME and reads the results."""
@@ -102,13 +99,7 @@ class Check:
     def save(self, figure, name="comparison.png"):
         """Leaves a picture of less than 60 kB; the page shows the one called comparison.png."""
         path = self.out / name
-        for dpi in (100, 85, 70, 55):
-            figure.savefig(path, dpi=dpi)
-            with PIL.Image.open(path) as image:
-                image.convert("RGB").quantize(256, method=PIL.Image.Quantize.MAXCOVERAGE, dither=PIL.Image.Dither.NONE).save(path, optimize=True)
-            if path.stat().st_size < PICTURE_BYTES:
-                break
-        plt.close(figure)
+        save_small(figure, path, PICTURE_BYTES)
         print(f"         picture: {path}")
 
     def finish(self):
@@ -124,6 +115,25 @@ class Check:
 
 def _text(value):
     return value if value is None or isinstance(value, str) else f"{value:.4g}"
+
+
+def command_line(program, deck, target, assignments=None, *more):
+    """The words that run a deck into a folder, with its values at some pointers changed."""
+    words = [str(program), "run", str(deck), "-o", str(target), "-q", *more]
+    for pointer, value in (assignments or {}).items():
+        words += ["--set", f"{pointer}={value}"]
+    return words
+
+
+def save_small(figure, path, limit):
+    """Leaves a picture of fewer bytes than `limit`, by as coarse a resolution as that takes."""
+    for dpi in (100, 85, 70, 55):
+        figure.savefig(path, dpi=dpi)
+        with PIL.Image.open(path) as image:
+            image.convert("RGB").quantize(256, method=PIL.Image.Quantize.MAXCOVERAGE, dither=PIL.Image.Dither.NONE).save(path, optimize=True)
+        if path.stat().st_size < limit:
+            break
+    plt.close(figure)
 
 
 def complete(target):
@@ -168,6 +178,11 @@ def depth_profile(frame, deck, axis=0, width=None):
     for column, share in ((left, 1 - (at - left)), (left + 1, at - left)):
         np.add.at(depth, np.clip(column, 0, count - 1), share * spacing2 / width)
     return low + (np.arange(count) + 0.5) * width, depth
+
+
+def front(frame):
+    """Where 99.5 % of the mass lies behind, along x, m: single grains that run ahead do not move it."""
+    return np.quantile(frame.field("position")[:, 0], 0.995)
 
 
 def distance_to_line(points, line):

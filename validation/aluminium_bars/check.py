@@ -3,7 +3,7 @@ import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from support import Check, depth_profile, distance_to_line, np, plt, reference  # noqa: E402
+from support import Check, depth_profile, distance_to_line, front, np, plt, reference  # noqa: E402
 
 YIELDED = 0.03  # equivalent plastic strain above which the bars have failed
 
@@ -24,9 +24,9 @@ def failure_line(frame, deck):
     return np.array(line)
 
 
-def surface_line(frame, deck):
-    """Final surface as a polyline: the depth profile from the wall to the first gap."""
-    x, depth = depth_profile(frame, deck)
+def surface_line(frame, deck, width=None):
+    """Final surface as a polyline: the depth profile, of columns `width` wide (a cell unless given), from the wall to the first gap."""
+    x, depth = depth_profile(frame, deck, width=width)
     end = np.argmax(depth < 1e-9) if (depth < 1e-9).any() else len(depth)
     return np.c_[x, depth][:end]
 
@@ -52,8 +52,8 @@ def main():
     check.figure("surface", 1e3 * distance_to_line(measured, line).mean())
     # The front as in the granular columns: 99.5 % of the mass lies behind it. Beyond, single bars lie apart; the depth profile, which counts them by
     # the volume that they have loosened to, is thicker than the last measured point (1.5 mm, under a cell) for a few centimetres more.
-    front = np.quantile(frame.field("position")[:, 0], 0.995)
-    check.figure("run_out", 100 * abs(front / measured[-1, 0] - 1), "", f"{front:.4f} m", f"{measured[-1, 0]:.4f} m")
+    reached = front(frame)
+    check.figure("run_out", 100 * abs(reached / measured[-1, 0] - 1), "", f"{reached:.4f} m", f"{measured[-1, 0]:.4f} m")
     check.note(f"the profile is thinner than 1.5 mm from {run_out(line, measured[-1, 1]):.4f} m")
     if len(failed) > 1:
         check.note(f"mean distance to the measured failure surface: {1e3 * distance_to_line(measured_failure, failed).mean():.2f} mm")

@@ -15,9 +15,10 @@ def ritter(x, time):
     return np.where(x < -time * speed, DEPTH, np.where(x > 2 * time * speed, 0, fan))
 
 
-def error(results, time):
+def error(results, time, width=None):
+    """Σ|h − h_Ritter| Δx / (H0 L0), from the depths of columns `width` wide (a cell unless given)."""
     frame = results.frame_at(time)
-    x, depth = depth_profile(frame, results.deck)
+    x, depth = depth_profile(frame, results.deck, width=width)
     width = x[1] - x[0]
     return np.abs(depth - ritter(x - GATE, frame.time)).sum() * width / (DEPTH * GATE)
 

@@ -1,0 +1,123 @@
+"""What a scene of the speed–accuracy charts is, and the variants of its grid. Each scene is one file in chart_scenes/ that defines SCENE."""
+import dataclasses
+import importlib.util
+import itertools
+import json
+import pathlib
+import sys
+import typing
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+FOLDER = pathlib.Path(__file__).resolve().parent / "chart_scenes"
+sys.path.insert(0, str(ROOT / "validation"))
+
+from support import depth_profile, np  # noqa: E402
+
+TRANSFERS, BASES, PRECISIONS = ("pic", "flip", "apic", "tpic"), ("linear", "quadratic", "cubic"), ("f32", "f64")
+EVERY = tuple(itertools.product(TRANSFERS, BASES, PRECISIONS))
+# Those that fine cells are spent on, and the finest.
+CHOSEN = tuple((transfer, "quadratic", precision) for transfer in TRANSFERS[1:] for precision in PRECISIONS) + (("apic", "linear", "f32"), ("apic", "cubic", "f32"))
+FINEST = tuple((transfer, "quadratic", precision) for transfer in TRANSFERS[2:] for precision in PRECISIONS)
+
+
+@dataclasses.dataclass(frozen=True)
+class Variant:
+    """One way to compute a scene; `step` is a fixed step in s, or "auto"."""
+    transfer: str
+    basis: str
+    precision: str
+    cell: float
+    per_cell: int = 4
+    step: float | str = "auto"
+
+    @property
+    def name(self):
+        fixed = "" if self.step == "auto" else f"_step{self.step:g}"
+        return f"{self.transfer}_{self.basis}_{self.precision}_{self.cell:g}_{self.per_cell}{fixed}"
+
+
+@dataclasses.dataclass(frozen=True)
+class Block:
+    """A part of the grid: every curve at every cell size (m) with every number of particles per cell."""
+    cells: tuple
+    per_cell: tuple = (4,)
+    curves: tuple = EVERY
+
+    def variants(self):
+        return [Variant(*curve, cell, count) for cell in self.cells for count in self.per_cell for curve in self.curves]
+
+
+@dataclasses.dataclass(frozen=True)
+class Measure:
+    """An error: of(results, results of the reference run) in `unit`."""
+    label: str
+    unit: str
+    of: typing.Callable
+
+
+@dataclasses.dataclass(frozen=True)
+class Scene:
+    title: str
+    says: str        # what the scene is and how its errors are measured: a paragraph of the page
+    deck: pathlib.Path
+    end: float       # s
+    blocks: tuple
+    measures: dict   # key → Measure; the Pareto front goes by the first
+    paper: Variant   # the numerical choices of Du & He 2025
+    paper_says: str  # where they come from
+    advice: typing.Callable  # Kept (charts_data) → a sentence with its evidence
+    reference: Variant | None = None  # a run that others are compared with
+    frames: float | None = None       # s between frames; only the last one otherwise
+    gauges: float | None = None       # s between values of gauges; as frames otherwise
+    flip_fraction: float = 0.99
+    cost: str = "cpu_seconds"  # what front and rival go by: that, or "particle_steps" where something else than the method takes the time
+    settings: dict = dataclasses.field(default_factory=dict)  # further assignments by pointer
+
+    def variants(self):
+        return list(dict.fromkeys(variant for block in self.blocks for variant in block.variants()))
+
+    def assignments(self, variant):
+        """The deck's values by pointer that make it this variant."""
+        method = {"transfer": variant.transfer, "basis": variant.basis, "precision": variant.precision}
+        if variant.transfer == "flip":
+            method["flip_fraction"] = self.flip_fraction
+        frames = self.frames or self.end
+        whole = {
+            "/domain/cell_size": variant.cell, "/bodies/0/particles_per_cell": variant.per_cell, "/method": method,
+            "/time": {"end": self.end, "step": variant.step},
+            "/output": {"interval": frames, "gauge_interval": self.gauges or frames, "formats": ["hdf5"], "fields": ["velocity"]},
+            **self.settings,
+        }
+        return {pointer: json.dumps(value) for pointer, value in whole.items()}
+
+    def reduced(self):
+        """The scene on a grid of seconds: APIC and FLIP at the two largest cell sizes, the paper's choices and the reference made as coarse."""
+        cells = sorted({variant.cell for variant in self.variants()}, reverse=True)[:3]
+        block = Block(cells[:2], curves=tuple((transfer, "quadratic", precision) for transfer in ("apic", "flip") for precision in PRECISIONS))
+        coarser = cells[1] / self.paper.cell
+        paper = dataclasses.replace(self.paper, cell=cells[1], step=self.paper.step * coarser)
+        reference = self.reference and dataclasses.replace(self.reference, cell=cells[2])
+        return dataclasses.replace(self, blocks=(block,), paper=paper, reference=reference)
+
+
+def scenes():
+    """Name → scene, by the files of chart_scenes/."""
+    return {path.stem: _module(path).SCENE for path in sorted(FOLDER.glob("*.py"))}
+
+
+def check_of(case):
+    """The check of a validation case as a module: its closed forms and measures."""
+    return _module(ROOT / "validation" / case / "check.py")
+
+
+def profile_distance(results, reference, time, width):
+    """Σ|h − h'| Δx / Σ h' Δx of the depth profiles of two runs, in columns `width` wide (m)."""
+    depth, other = (depth_profile(run.frame_at(time), run.deck, width=width)[1] for run in (results, reference))
+    return np.abs(depth - other).sum() / other.sum()
+
+
+def _module(path):
+    spec = importlib.util.spec_from_file_location(f"{path.parent.name}_{path.stem}", path)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
