@@ -14,16 +14,15 @@ sys.path.insert(0, str(ROOT / "scripts" / "python"))
 
 import matplotlib  # noqa: E402
 import numpy as np  # noqa: E402
-import PIL.Image  # noqa: E402
 
 import bands  # noqa: E402
+from pictures import save_small  # noqa: E402
 from results import Results  # noqa: E402
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 
 GRAVITY = 9.81  # m/s², as in the decks
-PICTURE_BYTES = 60_000
 
 
 class Check:
@@ -99,7 +98,7 @@ class Check:
     def save(self, figure, name="comparison.png"):
         """Leaves a picture of less than 60 kB; the page shows the one called comparison.png."""
         path = self.out / name
-        save_small(figure, path, PICTURE_BYTES)
+        save_small(figure, path)
         print(f"         picture: {path}")
 
     def finish(self):
@@ -123,17 +122,6 @@ def command_line(program, deck, target, assignments=None, *more):
     for pointer, value in (assignments or {}).items():
         words += ["--set", f"{pointer}={value}"]
     return words
-
-
-def save_small(figure, path, limit):
-    """Leaves a picture of fewer bytes than `limit`, by as coarse a resolution as that takes."""
-    for dpi in (100, 85, 70, 55):
-        figure.savefig(path, dpi=dpi)
-        with PIL.Image.open(path) as image:
-            image.convert("RGB").quantize(256, method=PIL.Image.Quantize.MAXCOVERAGE, dither=PIL.Image.Dither.NONE).save(path, optimize=True)
-        if path.stat().st_size < limit:
-            break
-    plt.close(figure)
 
 
 def complete(target):

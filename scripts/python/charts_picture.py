@@ -1,6 +1,7 @@
 """Draws a scene's chart: each error over processor seconds and over particle-steps, one curve per scheme, basis and precision over cell sizes."""
 from charts_scene import BASES, EVERY, PRECISIONS, TRANSFERS
-from support import plt, save_small
+from pictures import save_small
+from support import plt
 
 COLOURS = dict(zip(TRANSFERS, ("#999999", "#d55e00", "#0072b2", "#009e73")))
 MARKERS = dict(zip(BASES, "^os"))

@@ -1,9 +1,11 @@
-"""Drawing of one frame: particles coloured by a field, with walls and obstacles."""
+"""Drawing of one frame: particles coloured by a field, with walls and obstacles; and pictures small enough for documents."""
 import matplotlib
 import numpy as np
+import PIL.Image
 
 matplotlib.use("Agg")
 import matplotlib.patches as patches  # noqa: E402
+import matplotlib.pyplot as plt  # noqa: E402
 
 LABELS = {
     "speed": "speed  m/s",
@@ -13,6 +15,18 @@ LABELS = {
     "body": "body",
 }
 AXES = "xyz"
+SMALL_BYTES = 60_000
+
+
+def save_small(figure, path, limit=SMALL_BYTES):
+    """Writes a figure as a PNG of fewer bytes than `limit`, by as coarse a resolution as that takes, and closes it."""
+    for dpi in (100, 85, 70, 55):
+        figure.savefig(path, dpi=dpi)
+        with PIL.Image.open(path) as image:
+            image.convert("RGB").quantize(256, method=PIL.Image.Quantize.MAXCOVERAGE, dither=PIL.Image.Dither.NONE).save(path, optimize=True)
+        if path.stat().st_size < limit:
+            break
+    plt.close(figure)
 
 
 def values_of(frame, field):

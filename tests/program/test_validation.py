@@ -15,6 +15,7 @@ sys.path.insert(0, str(ROOT / "validation"))
 import bands  # noqa: E402
 import support  # noqa: E402
 import validation_page  # noqa: E402
+from pictures import SMALL_BYTES  # noqa: E402
 
 ENTRY = {"what": "error", "unit": "%", "reason": "a test", "date": "2026-01-01"}
 
@@ -86,7 +87,7 @@ class Page(unittest.TestCase):
     def test_what_is_kept_belongs_to_a_case_and_its_pictures_are_small(self):
         for path in validation_page.KEPT.iterdir():
             self.assertIn(path.stem, bands.cases(), path)
-            self.assertLess(path.stat().st_size, support.PICTURE_BYTES, path)
+            self.assertLess(path.stat().st_size, SMALL_BYTES, path)
 
     def test_the_kept_figures_are_those_of_the_full_size(self):
         for path in validation_page.KEPT.glob("*.json"):
