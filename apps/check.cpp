@@ -11,6 +11,7 @@
 #include "io/progress.hpp"
 #include "io/results_directory.hpp"
 #include "observe/gauge.hpp"
+#include "scene/advice.hpp"
 #include "solvers/simulation.hpp"
 
 namespace jaxmpm {
@@ -42,10 +43,14 @@ void print_bodies(const Model& model, const Solver& solver) {
   }
 }
 
+FirstStep first_step(const Model& model, const Solver& solver) {
+  const double stable = solver.stable_step();
+  return {model.time.step.value_or(stable), stable / model.time.cfl};
+}
+
 /// Whether a fixed step is within the limit of the first state.
-bool print_step(const Model& model, const Solver& solver) {
-  const double limit = solver.stable_step() / model.time.cfl;
-  const double dt = model.time.step ? *model.time.step : solver.stable_step();
+bool print_step(const Model& model, const FirstStep& step) {
+  const auto [dt, limit] = step;
   std::cout << fmt::format("time step       {:.4g} s ({}; limit of the first state about {:.4g} s)\nsteps           {:.0f}{}\n", dt,
                            model.time.step ? "fixed" : "automatic", limit, model.time.end / dt,
                            model.time.step ? "" : " or more, as the flow gets faster");
@@ -62,19 +67,20 @@ int check(const DeckOptions& options) {
   const auto solver = make_solver(model, options.backend ? chosen_backend(options) : Backend::cpu);
   std::cout << options.deck << ": no errors\n";
   print_bodies(model, *solver);
-  const bool good = print_step(model, *solver);
+  const FirstStep step = first_step(model, *solver);
+  const bool good = print_step(model, step);
   std::cout << fmt::format("memory          {:.3g} GB for particles ({:.0f} bytes each), {:.3g} GB with grid and scene\n",
                            solver->bytes_per_particle() * static_cast<double>(solver->particle_count()) / 1e9, solver->bytes_per_particle(),
                            peak_memory_bytes() / 1e9);
-  const double dt = model.time.step ? *model.time.step : solver->stable_step();
   const double cost = good ? measure_step(*solver, model.time) : 0;
   if (good)
     std::cout << fmt::format("estimated time  {} ({:.3g} s a step on {} threads of this machine, without output)\n",
-                             duration(cost * model.time.end / dt), cost, thread_count());
+                             duration(cost * model.time.end / step.dt), cost, thread_count());
   const ResultsDirectory directory(deck.output.directory);
   std::cout << "results         " << directory.path()
             << (directory.holds_results() ? " (holds results: --overwrite or --resume will be needed)" : "") << '\n';
   for (const std::string& notice : model.notices) std::cout << "note: " << notice << '\n';
+  for (const std::string& sentence : advice(deck, model, step)) std::cout << "advice: " << sentence << '\n';
   if (good) return static_cast<int>(ExitCode::done);
   std::cout << "VERDICT: /time/step is above the limit, so the run would become unstable. Lower it, or use \"auto\".\n";
   return static_cast<int>(ExitCode::bad_verdict);

@@ -29,6 +29,12 @@ class Commands(ProgramTest):
         self.assertIn("VERDICT", self.expect(BAD_VERDICT, "check", self.write(small_deck(time={"end": 1, "step": 0.01}))))
         self.assertIn("/gravity", self.expect(DECK, "check", self.write(small_deck(gravity=[0, 0, -1]))))
 
+    def test_check_advises_without_changing_the_verdict(self):
+        self.assertNotIn("advice:", self.expect(DONE, "check", self.write(small_deck(materials={"water": {"model": "newtonian", "density": 1000, "sound_speed": 30}}))))
+        said = self.expect(DONE, "check", self.write(small_deck(method={"transfer": "pic", "basis": "linear"})))
+        self.assertIn("advice: linear splines", said)
+        self.assertIn("advice: the part of PIC", said)
+
     def test_bench(self):
         done = self.call("bench", self.write(small_deck()), "--steps", "20", "--json", "--threads", "1")
         self.assertEqual(done.returncode, DONE, done.stderr)
