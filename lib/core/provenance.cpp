@@ -1,10 +1,10 @@
 #include "core/provenance.hpp"
 
-#include <sys/resource.h>
 #include <unistd.h>
 
 #include <Kokkos_Core.hpp>
 #include <fstream>
+#include <string>
 
 #include "jaxmpm_git_commit.hpp"  // written at build time, see cmake/provenance.cmake
 
@@ -68,10 +68,13 @@ std::size_t resident_bytes() {
   return resident * std::size_t(sysconf(_SC_PAGESIZE));
 }
 
+// getrusage() will not do: a program that another one started inherits that one's peak through fork and exec.
 std::size_t peak_memory_bytes() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
+  std::ifstream status("/proc/self/status");
+  std::size_t kibibytes = 0;
+  for (std::string word; status >> word;)
+    if (word == "VmHWM:") status >> kibibytes;
+  return kibibytes * 1024;
 }
 
 }  // namespace jaxmpm

@@ -47,6 +47,11 @@ class Commands(ProgramTest):
         self.assertGreater(result["peak_memory_bytes"], 1e6)
         self.assertLessEqual(sum(result["seconds_by_phase"].values()), 1.01 * result["seconds"])
 
+    def test_peak_memory_is_the_program_s_own(self):
+        ballast = b"x" * (400 << 20)  # of the process that starts it
+        result = json.loads(self.call("bench", self.write(small_deck()), "--steps", "5", "--json", "--threads", "1").stdout)
+        self.assertLess(result["peak_memory_bytes"], len(ballast) // 2)
+
     def bench(self, deck, **assignments):
         words = [word for pointer, value in assignments.items() for word in ("--set", f"{pointer.replace('__', '/')}={json.dumps(value)}")]
         done = self.call("bench", deck, "--steps", "1", "--warm-up", "0", "--threads", "1", "--json", *words)
