@@ -38,6 +38,7 @@ struct Method {
   GradientForm gradient = GradientForm::spline;
   Precision precision = Precision::f64;
   double damping = 0;
+  double volume_averaging = 0;
   std::optional<Rest> rest;
 };
 

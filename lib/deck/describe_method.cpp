@@ -115,6 +115,13 @@ void describe(Description<Method>& d) {
       .unit("1/s")
       .from(0)
       .help("Rate ζ at which motion is taken from the grid, m dv/dt = … − ζ m v, to let a scene come to rest (dynamic relaxation).");
+  d.optional("volume_averaging", &Method::volume_averaging)
+      .from(0)
+      .to(1)
+      .help(
+          "Part of each step's change of volume that is averaged over the nodes around, against noisy pressure and against locking of "
+          "nearly "
+          "incompressible solids (docs/theory.md; measured in validation/pressure); 0 is none. In 2D, with --backend cpu.");
   d.optional("rest", &Method::rest)
       .otherwise("none: every particle moves at every step")
       .help("Only with --backend cpu, and not in gradients.");

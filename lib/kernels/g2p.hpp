@@ -113,6 +113,17 @@ struct DomainBounds {
   std::array<double, Dim> lower, upper;
 };
 
+/// tr H += part (θ̄ − θ): takes part of the last step's change of volume θ back and puts the mean of the nodes around in its place. Returns
+/// tr H as it was.
+template <class T>
+JAXMPM_INLINE Pack<T, batch<T>> average_volume(const Particles<T, 2>& p, std::size_t s, int count, Pack<T, batch<T>> mean, T part,
+                                               T H[][batch<T>]) {
+  using P = Pack<T, batch<T>>;
+  const P xx = P::load(H[0]), yy = P::load(H[3]), half = P(T(0.5) * part) * (mean - load(p.dilation[0].data() + s, count));
+  (xx + half).store(H[0]), (yy + half).store(H[3]);
+  return xx + yy;
+}
+
 /// Moves W particles and advances their material.
 template <class Sch>
 JAXMPM_INLINE void update_particles(Particles<typename Sch::T, Sch::Dim>& p, std::size_t s, int count,
@@ -163,6 +174,11 @@ JAXMPM_INLINE void update_particles(Particles<typename Sch::T, Sch::Dim>& p, std
       const P gradient = rate * component(from + k, c);
       (P(step.dt) * gradient).store(H[c * Dim + k]);
       if (!p.gradient.empty()) store(p.gradient[std::size_t(c * Dim + k)].data() + s, gradient, count);
+    }
+  if constexpr (Dim == 2)
+    if (!p.dilation.empty()) {
+      const P mean = gathered[4 * G::value + dilation_lane];
+      store(p.dilation[0].data() + s, average_volume(p, s, count, mean, step.volume_averaging, H), count);
     }
   sqrt(speed2).store(speed);
   material.update(p, s, count, H, speed, step.dt, account, report);

@@ -104,6 +104,7 @@ JAXMPM_INLINE void update_node(typename Sch::T* v, typename Sch::T* change, cons
   using T = typename Sch::T;
   const bool some = v[0] > grid.mass_cut_off;
   const T inverse = some ? T(1) / v[0] : T(0);
+  if constexpr (Sch::Dim == 2) v[dilation_lane] *= inverse;
   for (int c = 0; c < Sch::Dim; ++c) {
     const T pull = some ? grid.gravity_step[c] : T(0);
     if constexpr (Sch::flip) {

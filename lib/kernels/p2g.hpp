@@ -9,6 +9,7 @@ namespace jaxmpm {
 template <class T>
 struct StepConstants {
   T dt, cell_size, flip_fraction;
+  T volume_averaging = T(0);
 };
 
 /// Sums of one plane over the nodes of a stencil, kept in registers while consecutive particles share a base node.
@@ -87,8 +88,8 @@ JAXMPM_INLINE void scatter(StencilRows<Sch>& rows, const Stencil& t, int l, cons
   });
 }
 
-/// Coefficient quads of W particles: {m, m v} at rest, per axis m C Δx for the affine velocity, and −Δt V σ times 1/Δx (slopes) or Δx D⁻¹
-/// (moments) for the force.
+/// Coefficient quads of W particles: {m, m v} at rest (2D: and m θ, where θ is kept), per axis m C Δx for the affine velocity, and −Δt V σ
+/// times 1/Δx (slopes) or Δx D⁻¹ (moments) for the force.
 template <class Sch>
 struct Coefficients {
   using T = typename Sch::T;
@@ -107,6 +108,8 @@ struct Coefficients {
     const P m = load(p.mass.data() + s, count);
     q[0] = m;
     for (int c = 0; c < Dim; ++c) q[1 + c] = m * load(p.velocity[std::size_t(c)].data() + s, count);
+    if constexpr (Dim == 2)
+      if (!p.dilation.empty()) q[dilation_lane] = m * load(p.dilation[0].data() + s, count);
     if constexpr (Sch::affine) {
       const P scale = m * P(step.cell_size);
       for (int c = 0; c < Dim; ++c)

@@ -6,6 +6,10 @@
 
 namespace jaxmpm {
 
+/// In 2D the last value of a node's first quad has room for Σ m θ, then the mean of θ: the particles' change of volume in the last step,
+/// where it is averaged (/method/volume_averaging).
+inline constexpr int dilation_lane = 3;
+
 /// S: spline nodes; MLS: gradient form D⁻¹φ(x_i − x_p) instead of ∇φ.
 ///
 /// Along one axis a particle has three kinds of factor for a node: the weight w, the moment d = w (X_i − X_p) and the slope g = dφ/dX. A
@@ -25,7 +29,7 @@ struct Scheme {
   static constexpr bool p2g_moments = affine || mls, p2g_slopes = !mls;
   static constexpr bool g2p_moments = affine_by_moments || mls;
   static constexpr bool g2p_slopes = !mls || (affine && !affine_by_moments);
-  /// A node's record: one quad {mass, momentum or velocity}; FLIP has a second {–, impulse or change of velocity}.
+  /// A node's record: one quad {mass, momentum or velocity}; FLIP has a second {–, impulse or change of velocity}. In 2D see dilation_lane.
   static constexpr int planes = flip ? 2 : 1;
   using Shape = BlockShape<Dim, S>;
   static constexpr int arena_plane = (Shape::arena_nodes + 4) * 4;  // rows are read a full vector at a time: room behind the last

@@ -19,6 +19,7 @@ struct ReferenceBody {
   std::vector<Scalar> compression;                               // e = ρ/ρ0 − 1
   std::vector<std::array<Triple<Scalar>, 3>> affine;             // C, 1/s: row i, column j multiplies (x_i − x_p)_j
   std::vector<std::array<Triple<Scalar>, 3>> velocity_gradient;  // ∇v that the material saw last, 1/s
+  std::vector<Scalar> dilation, mean_dilation;                   // tr H of the last step, and its mean at the nodes around
   std::vector<std::vector<Scalar>> history;                      // as the body's law keeps it
 };
 

@@ -71,6 +71,7 @@ void particles_to_grid(const Model& model, const ReferenceState<Scalar>& state, 
       for (const Reach<Scalar>& r : stencil(model, body.position[p])) {
         ReferenceNode<Scalar>& node = grid[r.node];
         node.mass += m * r.weight;
+        node.dilation += m * r.weight * body.dilation[p];
         for (int c = 0; c < model.dim; ++c) {
           Scalar v = body.velocity[p][c];
           for (int a = 0; a < model.dim; ++a) {
@@ -105,6 +106,12 @@ Scalar largest_mass(const ReferenceState<Scalar>& state) {
   return largest;
 }
 
+/// From sums of changes of volume to their means.
+template <class Scalar>
+void average_dilation(const Scalar& mass_cutoff, ReferenceGrid<Scalar>& grid) {
+  for (auto& [index, node] : grid) node.dilation = node.mass > mass_cutoff ? node.dilation / node.mass : Scalar(0);
+}
+
 template <class Scalar>
 void check_position(const Model& model, const Triple<Scalar>& X, std::size_t body, std::size_t particle) {
   for (int a = 0; a < model.dim; ++a) {
@@ -121,9 +128,11 @@ void check_position(const Model& model, const Triple<Scalar>& X, std::size_t bod
 template <class Scalar>
 void grid_to_particle(const Model& model, const ReferenceGrid<Scalar>& grid, const Scalar& dt, ReferenceBody<Scalar>& body, std::size_t p) {
   Triple<Scalar> pic{}, change{};
+  body.mean_dilation[p] = Scalar(0);
   std::array<Triple<Scalar>, 3> moment_sum{}, slope_sum{}, gradient{};
   for (const Reach<Scalar>& r : stencil(model, body.position[p])) {
     const ReferenceNode<Scalar>& node = grid.at(r.node);
+    body.mean_dilation[p] += r.weight * node.dilation;
     for (int c = 0; c < model.dim; ++c) {
       pic[c] += r.weight * node.velocity[c];
       change[c] += r.weight * node.change[c];
@@ -148,7 +157,7 @@ void grid_to_particle(const Model& model, const ReferenceGrid<Scalar>& grid, con
   body.velocity_gradient[p] = gradient;
 }
 
-/// The materials advance with H = Δt ∇v.
+/// The materials advance with H = Δt ∇v, in which a part of the last step's change of volume gives way to its mean.
 template <class Scalar, int Dim>
 void update_stress(const Model& model, const Scalar& dt, std::size_t b, ReferenceBody<Scalar>& body, ReferenceReport<Scalar>& report) {
   with_law<Scalar>(model.bodies[b].material, [&](const auto& law) {
@@ -157,6 +166,9 @@ void update_stress(const Model& model, const Scalar& dt, std::size_t b, Referenc
       Matrix<Scalar, Dim> H;
       for (int i = 0; i < Dim; ++i)
         for (int j = 0; j < Dim; ++j) H(i, j) = dt * body.velocity_gradient[p][i][j];
+      const Scalar dilation = trace(H), share = Scalar(model.method.volume_averaging / Dim) * (body.mean_dilation[p] - body.dilation[p]);
+      for (int i = 0; i < Dim; ++i) H(i, i) = H(i, i) + share;
+      body.dilation[p] = dilation;
       const Scalar density = law.template update<Scalar, Dim>(H, dt, body.compression[p], body.history[p].data());
       const Scalar energy = density * body.mass[p] / (law.density * (Scalar(1) + body.compression[p]));
       (Law::template plastic_strain_index<Dim>() < 0 ? report.viscous : report.plastic) += energy;
@@ -208,6 +220,7 @@ ReferenceState<Scalar> reference_state(const Model& model) {
     body.compression.assign(initial.compression.begin(), initial.compression.end());
     body.affine.resize(count);
     body.velocity_gradient.resize(count);
+    body.dilation.assign(count, Scalar(0)), body.mean_dilation = body.dilation;
     body.history.resize(count);
     model.dim == 2 ? start_history<Scalar, 2>(model, b, body) : start_history<Scalar, 3>(model, b, body);
     state.bodies.push_back(std::move(body));
@@ -230,8 +243,10 @@ ReferenceReport<Scalar> reference_step(const Model& model, ReferenceState<Scalar
   ReferenceReport<Scalar> report;
   report.obstacle_impulse.resize(model.obstacles.size());
   particles_to_grid(model, state, report.grid);
+  const Scalar mass_cutoff = Scalar(1e-20) * largest_mass(state);
   predict(model, dt, time, report.grid);
-  ReferenceGridUpdate<Scalar>(model, Scalar(1e-20) * largest_mass(state), report).run();
+  average_dilation(mass_cutoff, report.grid);
+  ReferenceGridUpdate<Scalar>(model, mass_cutoff, report).run();
   for (std::size_t b = 0; b < state.bodies.size(); ++b) {
     ReferenceBody<Scalar>& body = state.bodies[b];
     for (std::size_t p = 0; p < body.mass.size(); ++p) {

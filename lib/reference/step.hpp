@@ -19,6 +19,7 @@ struct ReferenceNode {
   Triple<Scalar> predicted{};  // P_i = (p_i + Δt (f_i + m_i (gravity + body force)))/(1 + ζΔt)
   Triple<Scalar> velocity{};   // v_i after walls and obstacles
   Triple<Scalar> change{};     // Δv_i = v_i − p_i/m_i
+  Scalar dilation{};           // Σ m_p φ θ_p, then its mean: the change of volume in the last step
 };
 template <class Scalar>
 using ReferenceGrid = std::map<Node, ReferenceNode<Scalar>>;

@@ -51,7 +51,7 @@ ExplicitStep<T, Dim>::ExplicitStep(const Model& model)
     domain_.lower[d] = periodic ? -far : 0, domain_.upper[d] = periodic ? far : model.cells[d];
     if (periodic) blocks_.period[d] = model.cells[d] / BlockShape<Dim, 2>::B;
   }
-  constants_ = {T(0), T(model.cell_size), T(model.method.flip_fraction)};
+  constants_ = {T(0), T(model.cell_size), T(model.method.flip_fraction), T(model.method.volume_averaging)};
   grid_.record_contact(model.account_energy);
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     materials_.push_back(make_material_kernel<T, Dim>(model_.bodies[b].material));
@@ -109,7 +109,7 @@ void ExplicitStep<T, Dim>::choose_work() {
 template <class T, int Dim>
 void ExplicitStep<T, Dim>::stop(const Tile& tile) {
   Particles<T, Dim>& p = bodies_[tile.body];
-  for (auto* rates : {&p.velocity, &p.affine, &p.gradient})
+  for (auto* rates : {&p.velocity, &p.affine, &p.gradient, &p.dilation})
     for (Array<T>& component : *rates) std::fill(component.begin() + tile.begin, component.begin() + tile.end, T(0));
 }
 
@@ -127,7 +127,8 @@ void ExplicitStep<T, Dim>::p2g() {
   const auto arena = [&](std::size_t t) { return arenas_.data() + t * kernels_.arena_size; };
   parallel_for_host("jaxmpm::p2g", moving.size(), [&](std::size_t k) { scatter(moving[k], constants_, arena(moving[k])); });
   if (supports.empty()) return;
-  const StepConstants<T> unit{T(1), constants_.cell_size, constants_.flip_fraction};
+  StepConstants<T> unit = constants_;
+  unit.dt = T(1);
   parallel_for_host("jaxmpm::supports", supports.size(), [&](std::size_t k) {
     const std::size_t t = supports[k];
     supports_.fill(t, constants_.dt, arena(t), [&](T* out) { scatter(t, unit, out); });

@@ -33,7 +33,7 @@ void GridAdjoint<T, Dim>::update(const Blocks<Dim>& blocks, const T* arenas, dou
     for (int c = 0; c < Dim; ++c) block_[b].gravity[std::size_t(c)] = double(by_pull[c]);
     for (const NearFace& node : near_face) {
       T* by_sums = own + 4 * node.own;
-      by_sums[0] = node.direct.mass;
+      by_sums[0] += node.direct.mass;  // what is there already came through the mean change of volume
       for (int c = 0; c < Dim; ++c) by_sums[1 + c] = node.direct.momentum[c];
     }
   });

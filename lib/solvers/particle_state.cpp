@@ -26,6 +26,7 @@ Particles<T, Dim> first_particles(const Model& model, const Body& body, const Ma
   p.position.assign(Dim, Array<double>(n)), p.velocity = zeros(Dim);
   p.mass.resize(n), p.compression.resize(n), p.id.assign(initial.id.begin(), initial.id.end());
   p.affine = zeros(affine ? Dim * Dim : 0), p.history = zeros(history);
+  p.dilation = zeros(model.method.volume_averaging > 0 ? 1 : 0);
   p.gradient = zeros(model.record_velocity_gradient ? Dim * Dim : 0);
   std::vector<double> h(history + 1);
   for (std::size_t a = 0; a < n; ++a) {

@@ -189,7 +189,8 @@ void ReversibleStep<T, Dim>::start_reverse() {
     Particles<T, Dim>& bar = bars_[b];
     const auto zeros = [&](std::size_t arrays) { return std::vector<Array<T>>(arrays, Array<T>(n, T(0))); };
     bar.position.assign(Dim, Array<double>(n, 0.0)), bar.velocity = zeros(Dim), bar.affine = zeros(p.affine.size());
-    bar.history = zeros(p.history.size()), bar.mass.assign(n, T(0)), bar.compression.assign(n, T(0));
+    bar.history = zeros(p.history.size()), bar.dilation = zeros(p.dilation.size());
+    bar.mass.assign(n, T(0)), bar.compression.assign(n, T(0));
   }
 }
 

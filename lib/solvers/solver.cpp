@@ -37,6 +37,8 @@ std::unique_ptr<Solver> make_solver(const Model& model, Backend backend) {
   check_extent(model);
   if (backend == Backend::cuda && model.method.rest)
     throw DeckError("/method/rest", "a GPU moves every particle at every step; give --backend cpu, or remove it");
+  if (backend == Backend::cuda && model.method.volume_averaging > 0)
+    throw DeckError("/method/volume_averaging", "a GPU does not average changes of volume; give --backend cpu, or remove it");
   if (backend == Backend::cuda && model.body_force)
     throw DeckError("/body_force", "is evaluated on the CPU alone; give --backend cpu, or remove it");
   for (int d = 0; backend == Backend::cuda && d < model.dim; ++d)

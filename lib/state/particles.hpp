@@ -29,8 +29,8 @@ struct AlignedAllocator {
 template <class T>
 using Array = std::vector<T, AlignedAllocator<T>>;
 
-/// Fields of one body. Sizes of the second level: position and velocity Dim, affine Dim·Dim or none, gradient Dim·Dim or none, history as
-/// the material asks.
+/// Fields of one body. Sizes of the second level: position and velocity Dim, affine Dim·Dim or none, gradient Dim·Dim or none, dilation 1
+/// or none, history as the material asks.
 template <class T, int Dim>
 struct Particles {
   std::vector<Array<double>> position;  // cells from domain.min
@@ -39,6 +39,7 @@ struct Particles {
   Array<T> compression;                 // ρ/ρ0 − 1
   std::vector<Array<T>> affine;         // 1/s, row-major: the affine matrix of APIC or the velocity gradient of TPIC
   std::vector<Array<T>> history;        // of the material: stress first where it is carried
+  std::vector<Array<T>> dilation;       // tr H of the last step, only with /method/volume_averaging
   std::vector<Array<T>> gradient;       // 1/s, row-major: the material's velocity gradient, only where some output asks for it
   Array<std::uint32_t> id;
 
@@ -80,13 +81,14 @@ struct Particles {
     };
     components("position", self.position), components("velocity", self.velocity);
     f(std::string("mass"), self.mass), f(std::string("compression"), self.compression);
-    components("affine", self.affine), components("history", self.history), components("gradient", self.gradient);
+    components("affine", self.affine), components("history", self.history), components("dilation", self.dilation);
+    components("gradient", self.gradient);
     f(std::string("id"), self.id);
   }
   template <class Self, class F>
   static void visit_changing(Self& self, F& f) {
     for (auto& array : self.position) f(array);
-    for (auto* arrays : {&self.velocity, &self.affine, &self.history})
+    for (auto* arrays : {&self.velocity, &self.affine, &self.history, &self.dilation})
       for (auto& array : *arrays) f(array);
     f(self.compression);
   }

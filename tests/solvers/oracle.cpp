@@ -37,6 +37,7 @@ ReferenceState<double> state_of(const Model& model, const Arrays& arrays) {
     const std::string body = "body" + std::to_string(b) + "_";
     ReferenceBody<double>& r = state.bodies[b];
     r.mass = arrays.at(body + "mass"), r.compression = arrays.at(body + "compression");
+    if (arrays.count(body + "dilation_0")) r.dilation = arrays.at(body + "dilation_0");
     for (std::size_t a = 0; a < r.mass.size(); ++a) {
       for (std::size_t d = 0; d < std::size_t(model.dim); ++d) {
         r.position[a][d] = arrays.at(body + "position_" + std::to_string(d))[a];
@@ -79,6 +80,7 @@ std::map<std::string, Difference> compare(const Model& model, Solver& solver, do
     };
     for (std::size_t a = 0; a < r.mass.size(); ++a) {
       found[body + "compression"].add(after.at(body + "compression")[a], r.compression[a]);
+      if (after.count(body + "dilation_0")) found[body + "dilation"].add(fast("dilation", 0, a), r.dilation[a]);
       for (std::size_t d = 0; d < std::size_t(model.dim); ++d) {
         found["position"].add(fast("position", d, a), r.position[a][d]);
         found["velocity"].add(fast("velocity", d, a), r.velocity[a][d]);
@@ -166,6 +168,19 @@ TEST_CASE("forces on a wall are the momentum that it gives") {
   REQUIRE(size > 0);
   for (int c = 0; c < dim; ++c)
     CHECK(force[std::size_t(c)] == Approx(report.face_impulse[2][c] * (1 / dt + model.method.damping)).margin(1e-11 * size));
+}
+
+TEST_CASE("the fast step averages changes of volume as the reference step does") {
+  deck::Method method;
+  method.volume_averaging = GENERATE(0.4, 1.0);
+  method.precision = GENERATE(deck::Precision::f64, deck::Precision::f32);
+  method.transfer = GENERATE(deck::Transfer::pic, deck::Transfer::flip, deck::Transfer::apic, deck::Transfer::tpic);
+  method.basis = GENERATE(deck::Basis::linear, deck::Basis::quadratic, deck::Basis::cubic);
+  method.gradient = GENERATE(deck::GradientForm::spline, deck::GradientForm::mls);
+  if (method.basis == deck::Basis::linear && method.gradient == deck::GradientForm::mls) return;
+  CAPTURE(method.volume_averaging, int(method.precision), int(method.transfer), int(method.basis), int(method.gradient));
+  check_step(busy_scene(2, method, water(2.0), sand(), deck::ContactKind::friction), 1e-4);
+  check_step(busy_scene(2, method, elastic(), rubber(), deck::ContactKind::no_slip), 1e-4);
 }
 
 TEST_CASE("a slope that meets a face of the domain does not push material out of it") {

@@ -61,9 +61,21 @@ JAXMPM_INLINE void update_particles_adjoint(const Particles<typename Sch::T, Sch
   alignas(64) T H[Dim * Dim][W], by_H[Dim * Dim][W];
   for (int c = 0; c < Dim; ++c)
     for (int k = 0; k < Dim; ++k) (rate * component(from + k, c)).store(H[c * Dim + k]);
+  P by_next(T(0));  // by tr H, through the next step
+  if constexpr (Dim == 2)
+    if (!p.dilation.empty()) {
+      by_next = load(bar.dilation[0].data() + s, count);
+      average_volume(p, s, count, gathered[4 * G::value + dilation_lane], step.volume_averaging, H);
+    }
   material.update(p, s, count, H, step.dt, bar, by_H, report.material);
+  if constexpr (Dim == 2)
+    if (!p.dilation.empty()) {
+      const P by_mean = P(T(0.5) * step.volume_averaging) * (P::load(by_H[0]) + P::load(by_H[3]));
+      quads[4 * G::value + dilation_lane] = by_mean;
+      store(bar.dilation[0].data() + s, -by_mean, count);
+    }
   for (int c = 0; c < Dim; ++c)
-    for (int k = 0; k < Dim; ++k) by(from + k, c) += rate * P::load(by_H[c * Dim + k]);
+    for (int k = 0; k < Dim; ++k) by(from + k, c) += rate * (P::load(by_H[c * Dim + k]) + (c == k ? by_next : P(T(0))));
 }
 
 /// Adjoint of g2p_tile. `velocities`: the arena that the tile gathered from; `arena` is cleared and receives the derivatives by it.

@@ -30,6 +30,10 @@ JAXMPM_INLINE Vector<typename Sch::T, Sch::Dim> update_node_adjoint(const typena
     }
     bar[c] = by_undamped * inverse;
   }
+  if constexpr (Sch::Dim == 2) {
+    by_inverse += bar[dilation_lane] * sums[dilation_lane];
+    bar[dilation_lane] *= inverse;
+  }
   bar[0] = -by_inverse * inverse * inverse;
   return by_pull;
 }

@@ -51,6 +51,11 @@ JAXMPM_INLINE void coefficients_adjoint(const Particles<typename Sch::T, Sch::Di
     by_mass += quad(0, c) * load(p.velocity[std::size_t(c)].data() + s, count);
     add(bar.velocity[std::size_t(c)], m * quad(0, c));
   }
+  if constexpr (Dim == 2)
+    if (!p.dilation.empty()) {
+      by_mass += gathered[dilation_lane] * load(p.dilation[0].data() + s, count);
+      add(bar.dilation[0], m * gathered[dilation_lane]);
+    }
   if constexpr (Sch::affine) {
     constexpr int first_moment = 1;
     const P size(step.cell_size);
