@@ -81,24 +81,36 @@ double mismatch(const Model& model, double dt) { return model.dim == 2 ? mismatc
 
 constexpr double tolerance = 1e-14, dt = 2e-4;
 
+void check_transpose(const Model& model) {
+  const double off = mismatch(model, dt);
+  CAPTURE(off);
+  CHECK(off < tolerance);
+}
+
+/// Calls f(method) for every basis, transfer and form of the gradient that go together.
+template <class F>
+void for_each_scheme(F&& f) {
+  using deck::Basis, deck::GradientForm, deck::Transfer;
+  for (const Basis basis : {Basis::linear, Basis::quadratic, Basis::cubic})
+    for (const Transfer transfer : {Transfer::pic, Transfer::flip, Transfer::apic, Transfer::tpic})
+      for (const GradientForm gradient : {GradientForm::spline, GradientForm::mls}) {
+        if (basis == Basis::linear && gradient == GradientForm::mls) continue;
+        deck::Method method;
+        method.basis = basis, method.transfer = transfer, method.gradient = gradient, method.precision = deck::Precision::f64;
+        method.flip_fraction = 0.95;
+        INFO(int(basis) << " basis, " << int(transfer) << " transfer, " << int(gradient) << " gradient");
+        f(method);
+      }
+}
+
 }  // namespace
 
 TEST_CASE("the adjoint of a step is the transpose of its derivative: schemes") {
-  using deck::Basis, deck::GradientForm, deck::Transfer;
   for (const int dim : {2, 3})
-    for (const Basis basis : {Basis::linear, Basis::quadratic, Basis::cubic})
-      for (const Transfer transfer : {Transfer::pic, Transfer::flip, Transfer::apic, Transfer::tpic})
-        for (const GradientForm gradient : {GradientForm::spline, GradientForm::mls}) {
-          if (basis == Basis::linear && gradient == GradientForm::mls) continue;
-          deck::Method method;
-          method.basis = basis, method.transfer = transfer, method.gradient = gradient, method.precision = deck::Precision::f64;
-          method.flip_fraction = 0.95;
-          const Model model = busy_scene(dim, method, water(0.5), sand(), deck::ContactKind::friction);
-          INFO(dim << "D, " << int(basis) << " basis, " << int(transfer) << " transfer, " << int(gradient) << " gradient");
-          const double off = mismatch(model, dt);
-          CAPTURE(off);
-          CHECK(off < tolerance);
-        }
+    for_each_scheme([dim](const deck::Method& method) {
+      INFO(dim << "D");
+      check_transpose(busy_scene(dim, method, water(0.5), sand(), deck::ContactKind::friction));
+    });
 }
 
 TEST_CASE("the adjoint of a step is the transpose of its derivative: body force, damping, moving walls, periodic faces") {
@@ -110,11 +122,8 @@ TEST_CASE("the adjoint of a step is the transpose of its derivative: body force,
         method.precision = deck::Precision::f64, method.transfer = transfer, method.flip_fraction = 0.95;
         INFO(dim << "D, " << int(transfer) << " transfer, wall " << int(kind));
         for (const Model& model :
-             {driven(busy_scene(dim, method, water(0.5), sand(), kind)), periodic_scene(dim, method, water(0.5), elastic(), kind)}) {
-          const double off = mismatch(model, dt);
-          CAPTURE(off);
-          CHECK(off < tolerance);
-        }
+             {driven(busy_scene(dim, method, water(0.5), sand(), kind)), periodic_scene(dim, method, water(0.5), elastic(), kind)})
+          check_transpose(model);
       }
 }
 
@@ -127,31 +136,18 @@ TEST_CASE("the adjoint of a step is the transpose of its derivative: materials a
         deck::Method method;
         method.precision = deck::Precision::f64;
         method.transfer = m % 2 == 0 ? deck::Transfer::apic : deck::Transfer::flip;
-        const Model model = busy_scene(dim, method, materials[m], materials[(m + 2) % materials.size()], kind);
         INFO(dim << "D, material " << m << ", wall " << int(kind));
-        const double off = mismatch(model, dt);
-        CAPTURE(off);
-        CHECK(off < tolerance);
+        check_transpose(busy_scene(dim, method, materials[m], materials[(m + 2) % materials.size()], kind));
       }
 }
 
 TEST_CASE("the adjoint of a step is the transpose of its derivative: averaged changes of volume") {
-  using deck::Basis, deck::ContactKind, deck::GradientForm, deck::Transfer;
+  using deck::ContactKind;
   const std::vector<deck::Material> materials{water(), water(2.0), sand(), elastic(), rubber()};
   std::size_t m = 0;
-  for (const Basis basis : {Basis::linear, Basis::quadratic, Basis::cubic})
-    for (const Transfer transfer : {Transfer::pic, Transfer::flip, Transfer::apic, Transfer::tpic})
-      for (const GradientForm gradient : {GradientForm::spline, GradientForm::mls}) {
-        if (basis == Basis::linear && gradient == GradientForm::mls) continue;
-        deck::Method method;
-        method.basis = basis, method.transfer = transfer, method.gradient = gradient, method.precision = deck::Precision::f64;
-        method.flip_fraction = 0.95, method.volume_averaging = 0.7;
-        const Model model =
-            busy_scene(2, method, materials[m % 5], materials[(m + 2) % 5], m % 2 ? ContactKind::friction : ContactKind::slip);
-        ++m;
-        INFO(int(basis) << " basis, " << int(transfer) << " transfer, " << int(gradient) << " gradient");
-        const double off = mismatch(model, dt);
-        CAPTURE(off);
-        CHECK(off < tolerance);
-      }
+  for_each_scheme([&](deck::Method method) {
+    method.volume_averaging = 0.7;
+    check_transpose(busy_scene(2, method, materials[m % 5], materials[(m + 2) % 5], m % 2 ? ContactKind::friction : ContactKind::slip));
+    ++m;
+  });
 }
