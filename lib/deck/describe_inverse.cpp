@@ -161,6 +161,13 @@ void describe(Description<GaussNewton>& d) {
   d.is("gauss_newton",
        "Damped Gauss–Newton method with differences of forward runs: for few unknowns, as each iteration takes two runs for each of them.",
        "optimizer");
+  d.optional("spacing", &GaussNewton::spacing)
+      .from(1e-4)
+      .to(0.25)
+      .help(
+          "Of the differences at first, in parts of the width of the bounds (of the start's size without them). It follows the steps as "
+          "they "
+          "become shorter, down to 1e-4. A loss may be rough on closer scales.");
   describe_stopping(d);
 }
 

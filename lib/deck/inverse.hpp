@@ -68,6 +68,7 @@ struct Lbfgs {
   std::optional<double> tolerance;
 };
 struct GaussNewton {
+  double spacing = 0.05;
   int iterations = 20;
   std::optional<double> tolerance;
 };

@@ -14,6 +14,8 @@ namespace {
 constexpr std::size_t most_standard_errors = 20;  // unknowns up to which they are given: two runs for each
 constexpr std::size_t most_gauss_newton = 100;    // unknowns: a Jacobian of more would cost more than many gradients
 constexpr std::size_t most_shown = 4;             // numbers in the line of an iteration
+constexpr double widest_spacing = 0.1;            // of differences for standard errors, in parts of the variable's scale
+constexpr int most_passes = 5;                    // until standard errors and the spacing of their differences agree
 
 void check_size(const deck::Optimizer& optimizer, std::size_t unknowns) {
   if (std::holds_alternative<deck::GaussNewton>(optimizer) && unknowns > most_gauss_newton)
@@ -94,13 +96,34 @@ void Inversion::tell_evaluation() {
                last.gradient_seconds);
 }
 
+/// A standard error says how far an unknown may move until the data object: the differences that it comes from should reach as far, or
+/// where the loss is rough on closer scales they would tell of that and not of the data.
+std::optional<Variables> Inversion::errors_over_themselves(const Variables& best) {
+  const SearchSpace& space = unknowns_.space();
+  Variables spacing = space.scale;
+  for (double& h : spacing) h *= least_jacobian_spacing;
+  for (int pass = 1;; ++pass) {
+    const auto errors = standard_errors(loss_.statistics(best, spacing), Variables(best.size(), 1.0));
+    if (!errors) return std::nullopt;
+    bool wider = false;
+    for (std::size_t i = 0; i < spacing.size(); ++i) {
+      const double reach = std::min((*errors)[i], widest_spacing * space.scale[i]);
+      wider |= reach > 2 * spacing[i];
+      spacing[i] = std::max(spacing[i], reach);
+    }
+    if (wider && pass < most_passes) continue;
+    Variables of_numbers = unknowns_.slopes(best);
+    for (std::size_t i = 0; i < of_numbers.size(); ++i) of_numbers[i] = std::abs(of_numbers[i]) * (*errors)[i];
+    return of_numbers;
+  }
+}
+
 void Inversion::find_standard_errors() {
   if (unknowns_.size() > most_standard_errors) return;
   const Variables best = loss_.best()->u;
   try {
     loss_.renew_steps(best);
-    const Linearisation about = loss_.statistics(best);
-    state_.standard_errors = standard_errors(about, unknowns_.slopes(best));
+    state_.standard_errors = errors_over_themselves(best);
   } catch (const NumericsError&) {
     return spdlog::warn("No standard errors: a run beside the best values became unstable.");
   }

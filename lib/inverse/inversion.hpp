@@ -20,6 +20,7 @@ class Inversion {
   void take(const std::string& stopped);
   void tell_evaluation();
   void find_standard_errors();
+  std::optional<Variables> errors_over_themselves(const Variables& best);
   void tell_result() const;
 
   const Unknowns& unknowns_;

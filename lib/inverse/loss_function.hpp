@@ -5,6 +5,10 @@
 
 namespace jaxmpm {
 
+/// Least spacing of the Jacobian's differences in parts of the variable's scale: the error of the difference, of the order of its square,
+/// and that of rounding in a run, some 1e-12 over it, are both far below what a standard error or a Gauss–Newton step needs.
+constexpr double least_jacobian_spacing = 1e-4;
+
 /// Least squares about a point: residuals r and their Jacobian J by the variables.
 struct Linearisation {
   double loss = 0;
@@ -24,7 +28,8 @@ class LossFunction {
   virtual const SearchSpace& space() const = 0;
   virtual Sample gradient(const Variables& u) = 0;
   virtual double loss(const Variables& u) = 0;
-  virtual Linearisation linearise(const Variables& u) = 0;
+  /// With differences over `spacing` of each variable.
+  virtual Linearisation linearise(const Variables& u, const Variables& spacing) = 0;
   /// Later evaluations take the steps that a run with these variables chooses.
   virtual void renew_steps(const Variables& u) = 0;
   /// Whether the steps depend on the variables, so that renewing them changes the function.

@@ -9,10 +9,6 @@
 namespace jaxmpm {
 namespace {
 
-/// Spacing of the Jacobian's differences in parts of the variable's scale: the error of the difference, of the order of its square, and
-/// that of rounding in a run, some 1e-12 over it, are both far below what a standard error or a Gauss–Newton step needs.
-constexpr double jacobian_spacing = 1e-4;
-
 double half_square(const std::vector<double>& residuals) { return dot(residuals, residuals) / 2; }
 
 /// Residuals that are not masked: a masked one is zero and stays it, whatever the variables do.
@@ -44,9 +40,13 @@ LossFunction::Sample RecordedLoss::gradient(const Variables& u) {
 
 double RecordedLoss::loss(const Variables& u) { return evaluate(Kind::loss, u).loss; }
 
-Linearisation RecordedLoss::linearise(const Variables& u) { return linearisation_of(evaluate(Kind::linearisation, u)); }
+Linearisation RecordedLoss::linearise(const Variables& u, const Variables& spacing) {
+  return linearisation_of(evaluate(Kind::linearisation, u, spacing));
+}
 
-Linearisation RecordedLoss::statistics(const Variables& u) { return linearisation_of(evaluate(Kind::statistics, u)); }
+Linearisation RecordedLoss::statistics(const Variables& u, const Variables& spacing) {
+  return linearisation_of(evaluate(Kind::statistics, u, spacing));
+}
 
 void RecordedLoss::renew_steps(const Variables& u) {
   if (steps_asked_ && !objective_.steps_vary()) return;
@@ -61,7 +61,7 @@ const RecordedEvaluation* RecordedLoss::best() const {
   return lowest;
 }
 
-const RecordedEvaluation& RecordedLoss::evaluate(Kind kind, const Variables& u) {
+const RecordedEvaluation& RecordedLoss::evaluate(Kind kind, const Variables& u, const Variables& spacing) {
   // Standard errors came last, when the iterations were done; now there are more.
   if (replaying() && kind != Kind::statistics && evaluations_[replayed_].kind == Kind::statistics) evaluations_.resize(replayed_);
   if (replaying()) return replay(kind, u);
@@ -70,7 +70,7 @@ const RecordedEvaluation& RecordedLoss::evaluate(Kind kind, const Variables& u) 
   fresh.u = u;
   std::string reason;
   try {
-    compute(fresh);
+    compute(fresh, spacing);
   } catch (const NumericsError& error) {
     fresh.diverged = true;
     reason = error.what();
@@ -94,12 +94,12 @@ const RecordedEvaluation& RecordedLoss::replay(Kind kind, const Variables& u) {
   return found;
 }
 
-void RecordedLoss::compute(RecordedEvaluation& evaluation) {
+void RecordedLoss::compute(RecordedEvaluation& evaluation, const Variables& spacing) {
   if (steps_of_) objective_.renew_steps(unknowns_.values(*steps_of_));
   steps_of_.reset();
   if (evaluation.kind == Kind::gradient) compute_gradient(evaluation);
   else if (evaluation.kind == Kind::loss) evaluation.loss = half_square(residuals_at(evaluation.u, evaluation));
-  else compute_linearisation(evaluation);
+  else compute_linearisation(evaluation, spacing);
 }
 
 void RecordedLoss::compute_gradient(RecordedEvaluation& evaluation) {
@@ -119,9 +119,9 @@ std::vector<double> RecordedLoss::residuals_at(const Variables& u, RecordedEvalu
   return residuals;
 }
 
-std::vector<double> RecordedLoss::column(const Variables& u, std::size_t variable, const std::vector<double>& centre,
+std::vector<double> RecordedLoss::column(const Variables& u, std::size_t variable, double spacing, const std::vector<double>& centre,
                                          RecordedEvaluation& evaluation) {
-  const Difference rule = difference(unknowns_, objective_, u, variable, jacobian_spacing * space().scale[variable]);
+  const Difference rule = difference(unknowns_, objective_, u, variable, spacing);
   std::vector<double> derivative(centre.size(), 0.0);
   for (std::size_t k = 0; k < rule.offset.size(); ++k) {
     Variables moved = u;
@@ -132,13 +132,13 @@ std::vector<double> RecordedLoss::column(const Variables& u, std::size_t variabl
   return derivative;
 }
 
-void RecordedLoss::compute_linearisation(RecordedEvaluation& evaluation) {
+void RecordedLoss::compute_linearisation(RecordedEvaluation& evaluation, const Variables& spacing) {
   const std::size_t n = evaluation.u.size();
   const std::vector<double> residuals = residuals_at(evaluation.u, evaluation);
   evaluation.loss = half_square(residuals);
   std::vector<std::vector<double>> columns;
   RecordedEvaluation differences;  // their runs count as the gradient's
-  for (std::size_t i = 0; i < n; ++i) columns.push_back(column(evaluation.u, i, residuals, differences));
+  for (std::size_t i = 0; i < n; ++i) columns.push_back(column(evaluation.u, i, spacing[i], residuals, differences));
   evaluation.gradient_seconds = differences.forward_seconds;
   for (std::size_t i = 0; i < n; ++i) evaluation.derivative.push_back(dot(columns[i], residuals));
   for (std::size_t i = 0; i < n; ++i)

@@ -30,9 +30,9 @@ class RecordedLoss : public LossFunction {
   Sample gradient(const Variables& u) override;
   double loss(const Variables& u) override;
   /// By central differences of forward runs, one-sided ones at bounds: two runs for each variable and one more.
-  Linearisation linearise(const Variables& u) override;
+  Linearisation linearise(const Variables& u, const Variables& spacing) override;
   /// The same for standard errors, which is no iteration.
-  Linearisation statistics(const Variables& u);
+  Linearisation statistics(const Variables& u, const Variables& spacing);
   void renew_steps(const Variables& u) override;
   bool steps_vary() const override { return objective_.steps_vary(); }
 
@@ -45,13 +45,14 @@ class RecordedLoss : public LossFunction {
 
  private:
   using Kind = RecordedEvaluation::Kind;
-  const RecordedEvaluation& evaluate(Kind kind, const Variables& u);
+  const RecordedEvaluation& evaluate(Kind kind, const Variables& u, const Variables& spacing = {});
   const RecordedEvaluation& replay(Kind kind, const Variables& u);
-  void compute(RecordedEvaluation& evaluation);
+  void compute(RecordedEvaluation& evaluation, const Variables& spacing);
   void compute_gradient(RecordedEvaluation& evaluation);
-  void compute_linearisation(RecordedEvaluation& evaluation);
+  void compute_linearisation(RecordedEvaluation& evaluation, const Variables& spacing);
   std::vector<double> residuals_at(const Variables& u, RecordedEvaluation& evaluation);
-  std::vector<double> column(const Variables& u, std::size_t variable, const std::vector<double>& centre, RecordedEvaluation& evaluation);
+  std::vector<double> column(const Variables& u, std::size_t variable, double spacing, const std::vector<double>& centre,
+                             RecordedEvaluation& evaluation);
   void take_costs(const Evaluation& cost, RecordedEvaluation& evaluation);
 
   const Unknowns& unknowns_;

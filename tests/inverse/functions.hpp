@@ -10,7 +10,8 @@
 
 namespace jaxmpm::testing {
 
-/// Half the sum of squares of residuals given as a function, which may throw NumericsError; exact Jacobian by the function `jacobian`.
+/// Half the sum of squares of residuals given as a function, which may throw NumericsError. Exact Jacobian by the function `jacobian`, or
+/// differences where there is none.
 class LeastSquares : public LossFunction {
  public:
   using Residuals = std::function<std::vector<double>(const Variables&)>;
@@ -29,21 +30,12 @@ class LeastSquares : public LossFunction {
     }
     return sum;
   }
-  Linearisation linearise(const Variables& u) override {
-    const double value = loss(u);
-    const auto r = residuals_(u);
-    const auto j = jacobian_(u);
-    Linearisation about{value, Variables(u.size(), 0.0), SquareMatrix(u.size()), r.size()};
-    for (std::size_t m = 0; m < r.size(); ++m)
-      for (std::size_t a = 0; a < u.size(); ++a) {
-        about.gradient[a] += r[m] * j[m][a];
-        for (std::size_t b = 0; b < u.size(); ++b) about.normal(a, b) += j[m][a] * j[m][b];
-      }
-    return about;
+  Linearisation linearise(const Variables& u, const Variables& spacing) override {
+    return about(u, jacobian_ ? jacobian_(u) : differences(u, spacing));
   }
   Sample gradient(const Variables& u) override {
-    const Linearisation about = linearise(u);
-    return {about.loss, about.gradient};
+    const Linearisation here = about(u, jacobian_(u));
+    return {here.loss, here.gradient};
   }
   void renew_steps(const Variables&) override { ++renewals; }
   bool steps_vary() const override { return vary; }
@@ -54,6 +46,31 @@ class LeastSquares : public LossFunction {
   double best_loss = std::numeric_limits<double>::infinity();
 
  private:
+  using Rows = std::vector<std::vector<double>>;  // [residual][variable]
+  Linearisation about(const Variables& u, const Rows& j) {
+    const double value = loss(u);
+    const auto r = residuals_(u);
+    Linearisation here{value, Variables(u.size(), 0.0), SquareMatrix(u.size()), r.size()};
+    for (std::size_t m = 0; m < r.size(); ++m)
+      for (std::size_t a = 0; a < u.size(); ++a) {
+        here.gradient[a] += r[m] * j[m][a];
+        for (std::size_t b = 0; b < u.size(); ++b) here.normal(a, b) += j[m][a] * j[m][b];
+      }
+    return here;
+  }
+  Rows differences(Variables u, const Variables& spacing) const {
+    Rows rows(residuals_(u).size(), std::vector<double>(u.size()));
+    for (std::size_t a = 0; a < u.size(); ++a) {
+      const double middle = u[a];
+      u[a] = middle + spacing[a];
+      const auto above = residuals_(u);
+      u[a] = middle - spacing[a];
+      const auto below = residuals_(u);
+      u[a] = middle;
+      for (std::size_t m = 0; m < rows.size(); ++m) rows[m][a] = (above[m] - below[m]) / (2 * spacing[a]);
+    }
+    return rows;
+  }
   SearchSpace space_;
   Residuals residuals_;
   Jacobian jacobian_;

@@ -17,7 +17,7 @@ TEST_CASE("L-BFGS finds the end of Rosenbrock's valley") {
 
 TEST_CASE("Gauss-Newton finds the end of Rosenbrock's valley in few steps") {
   LeastSquares valley = rosenbrock(plane(-1.2, 1));
-  CHECK(minimise(deck::GaussNewton{50, {}}, valley) == Ending::converged);
+  CHECK(minimise(deck::GaussNewton{0.05, 50, {}}, valley) == Ending::converged);
   CHECK(valley.best_loss < 1e-20);
   CHECK(valley.evaluations <= 80);
 }
@@ -27,8 +27,36 @@ TEST_CASE("Gauss-Newton does not jump to where the data say nothing") {
   LeastSquares hidden(
       {{0.05}, {0}, {1}, {1}}, [](const Variables& u) { return std::vector<double>{(u[0] < 0.5 ? u[0] * u[0] : 0.12) - 0.09}; },
       [](const Variables& u) { return std::vector<std::vector<double>>{{u[0] < 0.5 ? 2 * u[0] : 0}}; });
-  minimise(deck::GaussNewton{30, {}}, hidden);
+  minimise(deck::GaussNewton{0.05, 30, {}}, hidden);
   CHECK(hidden.best[0] == Approx(0.3));
+}
+
+TEST_CASE("Gauss-Newton crosses a loss that is rough on close scales") {
+  // Ten readings that grow with u, each with ripples of its own whose slopes are twenty times the trend's.
+  const auto residuals = [](const Variables& u) {
+    std::vector<double> r;
+    for (int m = 1; m <= 10; ++m) r.push_back(0.1 * m * (u[0] - 0.7) + 0.01 * std::sin(200 * u[0] * (1 + 0.1 * m) + m));
+    return r;
+  };
+  for (const double start : {0.05, 0.3, 0.95}) {
+    LeastSquares rough({{start}, {0}, {1}, {1}}, residuals, {}), close = rough;
+    minimise(deck::GaussNewton{0.05, 20, {}}, rough);
+    CHECK(rough.best[0] == Approx(0.7).margin(0.01));
+    CHECK(rough.evaluations < 60);
+    minimise(deck::GaussNewton{1e-4, 20, {}}, close);
+    CHECK(std::abs(close.best[0] - 0.7) > 0.01);  // stopped by the next ripple
+  }
+}
+
+TEST_CASE("Gauss-Newton takes closer differences where a run beside becomes unstable") {
+  LeastSquares edge({{0.98}, {0}, {1}, {1}},
+                    [](const Variables& u) {
+                      if (u[0] > 0.99) throw NumericsError("unstable");
+                      return std::vector<double>{u[0] * u[0] - 0.25};
+                    },
+                    {});
+  CHECK(minimise(deck::GaussNewton{0.05, 20, {}}, edge) == Ending::converged);
+  CHECK(edge.best[0] == Approx(0.5));
 }
 
 TEST_CASE("Adam comes down a bowl and stops within its tolerance of what cannot be explained") {
@@ -68,7 +96,7 @@ TEST_CASE("Optimisers keep to the bounds and find a minimum that lies on them") 
   // At u₀ = 1: (u₁) + (u₁ − 0.2) = 0 gives u₁ = 0.1; ∂/∂u₀ = 0.1 − 1 < 0 pushes against the bound.
   const SearchSpace square{{0.3, 0.9}, {0, 0}, {1, 1}, {1, 1}};
   for (const deck::Optimizer& optimizer : {deck::Optimizer(deck::Adam{0.1, 0.98, 400, {}}), deck::Optimizer(deck::Lbfgs{100, 10, {}}),
-                                           deck::Optimizer(deck::GaussNewton{50, {}})}) {
+                                           deck::Optimizer(deck::GaussNewton{0.05, 50, {}})}) {
     LeastSquares corner(square, residuals, jacobian);
     minimise(optimizer, corner);
     INFO("optimizer " << optimizer.index());
@@ -103,7 +131,7 @@ TEST_CASE("A run that becomes unstable shortens the step instead of ending the s
         return std::vector<double>{u[0] * u[0] - 4};
       },
       [](const Variables& u) { return std::vector<std::vector<double>>{{2 * u[0]}}; });
-  minimise(deck::GaussNewton{30, {}}, root);
+  minimise(deck::GaussNewton{0.05, 30, {}}, root);
   CHECK(root.best[0] == Approx(2));
 }
 

@@ -41,16 +41,17 @@ TEST_CASE("Linearisation: JᵀJ and Jᵀr of data and priors, one-sided at a bou
   const Unknowns of_priors(priors.deck), of_bounds(bounds.deck);
   RecordedLoss with_priors(of_priors, objective, {}, nothing), with_bounds(of_bounds, objective, {}, nothing);
   const double x = 1.5;
+  const Variables close{1e-4, 1e-4};
   for (const double y : {-7.0, -10.0, 10.0}) {  // the last two are bounds
-    const Linearisation a = with_bounds.linearise({x, y});
+    const Linearisation a = with_bounds.linearise({x, y}, close);
     CHECK(a.residuals == 3);
     CHECK(a.normal(0, 0) == Approx(1 + y * y).epsilon(1e-7));
     CHECK(a.normal(0, 1) == Approx(x * y).epsilon(1e-7));
     CHECK(a.normal(1, 1) == Approx(1 + x * x).epsilon(1e-7));
     CHECK(a.gradient[1] == Approx(y + 8 + x * (x * y + 8)).epsilon(1e-7));
   }
-  CHECK(with_bounds.linearise({1, -8}).residuals == 3);  // residuals that vanish at the minimum still count
-  const Linearisation b = with_priors.linearise({x, -7});
+  CHECK(with_bounds.linearise({1, -8}, close).residuals == 3);  // residuals that vanish at the minimum still count
+  const Linearisation b = with_priors.linearise({x, -7}, close);
   CHECK(b.residuals == 4);
   CHECK(b.normal(0, 0) == Approx(1 + 49 + 4).epsilon(1e-7));
   CHECK(b.gradient[0] == Approx(0.5 - 7 * (8 - 10.5) - 2).epsilon(1e-7));
@@ -60,7 +61,7 @@ TEST_CASE("An inversion that was stopped at any evaluation ends as if it had not
   const InverseDeck own(plain);
   const Unknowns unknowns(own.deck);
   for (const deck::Optimizer& optimizer : {deck::Optimizer(deck::Adam{0.5, 0.98, 80, {}}), deck::Optimizer(deck::Lbfgs{40, 10, {}}),
-                                           deck::Optimizer(deck::GaussNewton{20, {}})}) {
+                                           deck::Optimizer(deck::GaussNewton{0.05, 20, {}})}) {
     GravityObjective whole_objective;
     RecordedLoss whole(unknowns, whole_objective, {}, nothing);
     minimise(optimizer, whole);
