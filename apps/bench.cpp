@@ -52,11 +52,12 @@ class FinalPositions : public Observer {
 
 /// The gradient of the first `dt.size()` steps, within the deck's memory and disk: the second of two, as most of an inversion's, since the
 /// first one also pays for memory that no one has touched before.
-nlohmann::ordered_json bench_gradient(const Model& model, const deck::Deck& deck, std::vector<double> dt, double plain_seconds) {
+nlohmann::ordered_json bench_gradient(const Model& model, const deck::Deck& deck, std::vector<double> dt, std::size_t blocks,
+                                      double plain_seconds) {
   double end = 0;
   for (const double step : dt) end += step;
   FinalPositions observer(end);
-  const StepSequence steps{dt, {dt.size()}};
+  const StepSequence steps{dt, {dt.size()}, blocks};
   SnapshotStack snapshots(deck.output.directory);
   const Room room = room_of(deck.inverse.empty() ? deck::Inverse{} : deck::inverse_of(deck));
   const MemoryPlan plan = plan_gradient(model, steps, room, snapshots);
@@ -102,10 +103,11 @@ nlohmann::ordered_json measure(const BenchOptions& options) {
   nlohmann::ordered_json result = cost_summary(model, *solver, backend, options.steps, seconds, solver->phase_seconds() - before);
   result["cpu_seconds"] = cpu;
   if (!options.gradient) return result;
+  const std::size_t blocks = solver->active_blocks();
   solver.reset();
   dt.insert(dt.end(), measured.begin(), measured.end());
   dt.resize(options.steps);
-  result["gradient"] = bench_gradient(model, deck, std::move(dt), seconds);
+  result["gradient"] = bench_gradient(model, deck, std::move(dt), blocks, seconds);
   return result;
 }
 

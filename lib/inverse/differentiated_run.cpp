@@ -66,6 +66,7 @@ class Reversal {
         walk_(solver.forward(), steps, observer, stop),
         snapshots_(plan.snapshots),
         numbers_(stack) {
+    solver.expect_blocks(steps.most_blocks);
     numbers_.prepare(solver.kept_bytes(), plan.snapshots - plan.on_disk, plan.on_disk);
     keep(0);
   }
@@ -80,11 +81,13 @@ class Reversal {
         go_to(start);
         const std::size_t next = start + steps_to_next_snapshot(end - start, snapshots_ - kept_.size());
         walk_.advance(start, next);
+        if (next == start + 1) keep_sums();
         keep(next);
         continue;
       }
       if (end == steps_.dt.size()) {
         go_to(start), walk_.advance(start, end);
+        keep_sums();
         cost.forward_seconds = since(begin);
         start_reverse(end);
       }
@@ -107,6 +110,7 @@ class Reversal {
     kept_.push_back({state, solver_.keep(numbers_.push())});
     present_ = state;
   }
+  void keep_sums() { solver_.keep_sums(*kept_.back().rest, numbers_.change_top()); }
   void forget() {
     numbers_.pop();
     kept_.pop_back();
@@ -123,7 +127,7 @@ class Reversal {
   /// Reverses the step from the newest kept state, and forgets that.
   void reverse_step(std::size_t start) {
     go_to(start);
-    solver_.step_adjoint(steps_.dt[start]);
+    solver_.step_adjoint(steps_.dt[start], *kept_.back().rest, numbers_.top());
     if (start == 0 || looked_at(start)) {
       go_back();
       add_looks(start);
@@ -170,6 +174,14 @@ Split split_snapshots(const ReversibleSolver& solver, std::size_t wanted, const 
   return split;
 }
 
+/// The adjoint of one step, after which a stepper has all its memory.
+void try_adjoint(ReversibleSolver& solver, double dt) {
+  std::vector<std::byte> numbers(solver.kept_bytes());
+  const std::unique_ptr<KeptState> kept = solver.keep(numbers.data());
+  solver.start_reverse();
+  solver.step_adjoint(dt, *kept, numbers.data());
+}
+
 /// The next moment of a run that also meets the observer's times.
 Moment next_moment(const TimeControl& control, const Moment& now, double stable, double look) {
   const Moment free = control.after_next(now, stable);
@@ -199,6 +211,7 @@ StepSequence record_run(const Model& model, Observer& observer, const std::funct
     now = next_moment(control, now, control.is_automatic() ? solver.stable_step() : 0, times[k]);
     solver.step(now.dt);
     steps.dt.push_back(now.dt);
+    steps.most_blocks = std::max(steps.most_blocks, solver.active_blocks());
   }
   return steps;
 }
@@ -210,7 +223,8 @@ void replay_run(const Model& model, const StepSequence& steps, Observer& observe
 
 MemoryPlan plan_gradient(const Model& model, const StepSequence& steps, const Room& room, const SnapshotStack& stack) {
   const std::unique_ptr<ReversibleSolver> solver = make_reversible_solver(model);
-  if (!steps.dt.empty()) solver->start_reverse(), solver->step_adjoint(steps.dt[0]);  // it has all its memory then
+  solver->expect_blocks(steps.most_blocks);
+  if (!steps.dt.empty()) try_adjoint(*solver, steps.dt[0]);
   MemoryPlan plan;
   plan.steps = steps.dt.size();
   plan.snapshot_bytes = solver->kept_bytes() + solver->shared_bytes();

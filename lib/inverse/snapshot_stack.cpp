@@ -36,6 +36,12 @@ const std::byte* SnapshotStack::top() {
   return blocks_.back();
 }
 
+std::byte* SnapshotStack::change_top() {
+  top();
+  in_file_ = std::min(in_file_, size() - 1);  // what the file has of it is out of date
+  return blocks_.back();
+}
+
 void SnapshotStack::pop() {
   if (first_in_memory_ < size()) pool_.give_back(blocks_.back());
   blocks_.pop_back();

@@ -20,6 +20,8 @@ class SnapshotStack {
   std::byte* push();
   /// The newest snapshot. Throws IoError.
   const std::byte* top();
+  /// The same, to be changed.
+  std::byte* change_top();
   void pop();
   /// Bytes of memory taken from the system.
   std::size_t memory_bytes() const { return pool_.bytes(); }

@@ -72,10 +72,33 @@ WallSums<T, Dim> GridUpdate<T, Dim>::wall_sums(const Blocks<Dim>& blocks, std::s
 
 template <class T, int Dim>
 void GridUpdate<T, Dim>::update(const Blocks<Dim>& blocks, const T* arenas, double dt, double time) {
+  update_from(
+      blocks, [&](std::size_t b, T* own) { kernels_.sum(blocks, b, arenas, own); }, dt, time);
+}
+
+template <class T, int Dim>
+void GridUpdate<T, Dim>::update_again(const Blocks<Dim>& blocks, const T* sums, double dt, double time) {
+  const std::size_t size = kernels_.own_size;
+  update_from(
+      blocks, [&](std::size_t b, T* own) { std::memcpy(own, sums + b * size, sizeof(T) * size); }, dt, time);
+}
+
+template <class T, int Dim>
+void GridUpdate<T, Dim>::copy_sums(T* to) const {
+  const std::size_t size = kernels_.own_size;
+  parallel_for_host_static("jaxmpm::copy_sums", sums_size() / size,
+                           [&](std::size_t b) { std::memcpy(to + b * size, sums(b), sizeof(T) * size); });
+}
+
+/// `sum(b, own)` gives the sums of a block's own nodes.
+template <class T, int Dim>
+template <class Sum>
+void GridUpdate<T, Dim>::update_from(const Blocks<Dim>& blocks, const Sum& sum, double dt, double time) {
   const GridConstants<T, Dim> constants = this->constants(dt);
   if (keep_sums_) sums_.resize(blocks.count() * kernels_.own_size);
   parallel_for_host("jaxmpm::grid", summed_.size(), [&](std::size_t k) {
-    update_block(blocks, summed_[k], arenas, constants);
+    sum(summed_[k], grid_.data() + summed_[k] * kernels_.own_size);
+    update_block(summed_[k], constants);
     if (model_.body_force) apply_body_force(blocks, summed_[k], constants, dt, time);
     if (contact_blocks_.obstacles(summed_[k])) apply_obstacles(blocks, summed_[k]);
   });
@@ -83,10 +106,9 @@ void GridUpdate<T, Dim>::update(const Blocks<Dim>& blocks, const T* arenas, doub
 }
 
 template <class T, int Dim>
-void GridUpdate<T, Dim>::update_block(const Blocks<Dim>& blocks, std::size_t b, const T* arenas, const GridConstants<T, Dim>& constants) {
+void GridUpdate<T, Dim>::update_block(std::size_t b, const GridConstants<T, Dim>& constants) {
   if (recording_) contact_[b] = {}, contact_[b].obstacle.resize(model_.obstacles.size());
   T* own = grid_.data() + b * kernels_.own_size;
-  kernels_.sum(blocks, b, arenas, own);
   const int wall_slot = contact_blocks_.wall_slot()[b];
   if (T* kept = wall_slot >= 0 ? raw_.data() + std::size_t(wall_slot) * kernels_.own_size
                                : (keep_sums_ ? sums_.data() + b * kernels_.own_size : nullptr))

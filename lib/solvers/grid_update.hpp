@@ -29,6 +29,8 @@ class GridUpdate {
   /// Sums the arenas and turns them into velocities: afterwards grid() holds {–, v} (and FLIP's {–, Δv}) of every block that is updated.
   /// `time`: that of the step's beginning, s.
   void update(const Blocks<Dim>& blocks, const T* arenas, double dt, double time);
+  /// The same from sums that copy_sums() gave, to the same bits.
+  void update_again(const Blocks<Dim>& blocks, const T* sums, double dt, double time);
   const T* grid() const { return grid_.data(); }
 
   void record_contact(bool on) { recording_ = on; }
@@ -39,7 +41,10 @@ class GridUpdate {
     const int slot = contact_blocks_.wall_slot()[b];
     return slot >= 0 ? raw_.data() + std::size_t(slot) * kernels_.own_size : sums_.data() + b * kernels_.own_size;
   }
-  /// The same, of a block at walls and its neighbours, with Δt g.
+  /// Sums of all blocks, in their order: sums_size() numbers.
+  std::size_t sums_size() const { return grid_.size(); }
+  void copy_sums(T* to) const;
+  /// Those of a block at walls and its neighbours, with Δt g.
   WallSums<T, Dim> wall_sums(const Blocks<Dim>& blocks, std::size_t b, const GridConstants<T, Dim>& constants) const;
   GridConstants<T, Dim> constants(double dt) const { return grid_constants<T, Dim>(model_, mass_cut_off_, dt); }
   /// Δt (g + b) at a node of a block in the last update, m/s.
@@ -57,7 +62,9 @@ class GridUpdate {
   static constexpr int cells = BlockShape<Dim, 2>::cells, around = BlockShape<Dim, 2>::neighbours;
 
   const T* force() const { return model_.body_force ? force_.data() : nullptr; }
-  void update_block(const Blocks<Dim>& blocks, std::size_t b, const T* arenas, const GridConstants<T, Dim>& constants);
+  template <class Sum>
+  void update_from(const Blocks<Dim>& blocks, const Sum& sum, double dt, double time);
+  void update_block(std::size_t b, const GridConstants<T, Dim>& constants);
   void apply_body_force(const Blocks<Dim>& blocks, std::size_t b, const GridConstants<T, Dim>& constants, double dt, double time);
   void update_wall_block(const Blocks<Dim>& blocks, std::size_t b, const GridConstants<T, Dim>& constants);
   void apply_obstacles(const Blocks<Dim>& blocks, std::size_t b);

@@ -7,7 +7,7 @@
 
 namespace jaxmpm {
 
-/// A state to go back to, besides the numbers of its particles.
+/// A state to go back to, besides its numbers.
 class KeptState {
  public:
   virtual ~KeptState() = default;
@@ -18,11 +18,16 @@ class ReversibleSolver {
   virtual ~ReversibleSolver() = default;
   /// The stepper itself: the present state and the way forward.
   virtual Solver& forward() = 0;
-  /// Bytes of the particles' numbers of a kept state, and of what states share until the next sort.
+  /// Steps will have so many active blocks at most: kept states get room for their sums, without which the adjoint of a step has
+  /// to scatter again.
+  virtual void expect_blocks(std::size_t most) = 0;
+  /// Bytes of the numbers of a kept state, and of what states share until the next sort.
   virtual std::size_t kept_bytes() const = 0;
   virtual std::size_t shared_bytes() const = 0;
-  /// Keeps the present state; the particles' numbers are written to `numbers`, kept_bytes() of them.
+  /// Keeps the present state; its numbers are written to `numbers`, kept_bytes() of them.
   virtual std::unique_ptr<KeptState> keep(std::byte* numbers) = 0;
+  /// Adds to a kept state what the step from it, the last one taken, summed at the nodes.
+  virtual void keep_sums(KeptState& kept, std::byte* numbers) = 0;
   /// Makes a kept state the present one.
   virtual void go_back(const KeptState& kept, const std::byte* numbers) = 0;
 
@@ -30,8 +35,9 @@ class ReversibleSolver {
   virtual void start_reverse() = 0;
   /// Adds derivatives of the loss by the present state, given by its snapshot in order of ids.
   virtual void add_gradient(const SnapshotGradient& by) = 0;
-  /// Derivatives by the state after a step of dt from the present state become those by the present state. The present state is lost.
-  virtual void step_adjoint(double dt) = 0;
+  /// Derivatives by the state after a step of dt from a kept state, which is the present one, become those by that. The present state is
+  /// lost.
+  virtual void step_adjoint(double dt, const KeptState& kept, const std::byte* numbers) = 0;
   /// Derivatives by the model, once the reverse run has come to the first state.
   virtual ModelGradient gradient() const = 0;
   /// Particle-steps so far whose material stood within round-off of a branch.

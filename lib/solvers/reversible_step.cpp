@@ -35,15 +35,20 @@ void copy_stretches(const std::vector<Stretch>& stretches, Copy&& copy) {
 
 }  // namespace
 
-/// ExplicitStep::step(), read upwards. Nothing of the grid is kept: the first half of the step is done again.
+/// ExplicitStep::step(), read upwards. The nodes' velocities are needed, and come from the sums that were kept, or from a scatter as at
+/// first.
 template <class T, int Dim>
-void ReversibleStep<T, Dim>::step_adjoint(double dt) {
+void ReversibleStep<T, Dim>::step_adjoint(double dt, const KeptState& state, const std::byte* numbers) {
   this->constants_.dt = T(dt);
   Orders orders;
   const bool sorted = this->sort_is_due();
   if (sorted) this->sort(&orders);
-  this->p2g();
-  this->update_grid(dt);
+  if (static_cast<const Kept&>(state).has_sums) {
+    this->grid_.update_again(this->blocks_, reinterpret_cast<const T*>(numbers + particle_bytes()), dt, this->numbers_.time);
+  } else {
+    this->p2g();
+    this->update_grid(dt);
+  }
 
   g2p_adjoint();  // Eqs 15–18 and the stress (19–21): by the particles' end values → by velocities of nodes, and by start values
   update_grid_adjoint(dt);  // Eqs 13–14: by velocities → by sums of nodes
@@ -123,11 +128,25 @@ std::uint64_t ReversibleStep<T, Dim>::at_kinks() const {
 }
 
 template <class T, int Dim>
-std::size_t ReversibleStep<T, Dim>::kept_bytes() const {
+std::size_t ReversibleStep<T, Dim>::particle_bytes() const {
   std::size_t bytes = 0;
   for (const Particles<T, Dim>& p : this->bodies_)
     p.for_each_changing_field([&](const auto& field) { bytes += field.size() * sizeof(field[0]); });
-  return bytes;
+  constexpr std::size_t line = 64;  // of cache, where the sums begin
+  return (bytes + line - 1) / line * line;
+}
+
+template <class T, int Dim>
+void ReversibleStep<T, Dim>::expect_blocks(std::size_t most) {
+  room_for_sums_ = most * this->kernels_.own_size * sizeof(T);
+  this->grid_.keep_sums();
+}
+
+template <class T, int Dim>
+void ReversibleStep<T, Dim>::keep_sums(KeptState& state, std::byte* numbers) {
+  if (this->grid_.sums_size() * sizeof(T) > room_for_sums_) return;
+  this->grid_.copy_sums(reinterpret_cast<T*>(numbers + particle_bytes()));
+  static_cast<Kept&>(state).has_sums = true;
 }
 
 template <class T, int Dim>

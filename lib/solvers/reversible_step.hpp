@@ -12,14 +12,16 @@ class ReversibleStep final : public ExplicitStep<T, Dim>, public ReversibleSolve
   explicit ReversibleStep(const Model& model);
 
   Solver& forward() override { return *this; }
-  std::size_t kept_bytes() const override;
+  void expect_blocks(std::size_t most) override;
+  std::size_t kept_bytes() const override { return particle_bytes() + room_for_sums_; }
   std::size_t shared_bytes() const override;
   std::unique_ptr<KeptState> keep(std::byte* numbers) override;
+  void keep_sums(KeptState& kept, std::byte* numbers) override;
   void go_back(const KeptState& kept, const std::byte* numbers) override;
 
   void start_reverse() override;
   void add_gradient(const SnapshotGradient& by) override;
-  void step_adjoint(double dt) override;
+  void step_adjoint(double dt, const KeptState& kept, const std::byte* numbers) override;
   ModelGradient gradient() const override;
   std::uint64_t at_kinks() const override;
 
@@ -38,8 +40,10 @@ class ReversibleStep final : public ExplicitStep<T, Dim>, public ReversibleSolve
   struct Kept final : KeptState {
     std::shared_ptr<const Epoch> epoch;
     StepNumbers numbers;
+    bool has_sums = false;  // of the step from it, behind the numbers of its particles
   };
 
+  std::size_t particle_bytes() const;
   std::shared_ptr<const Epoch> present_epoch();
   void g2p_adjoint();
   void update_grid_adjoint(double dt);
@@ -53,6 +57,7 @@ class ReversibleStep final : public ExplicitStep<T, Dim>, public ReversibleSolve
   AdjointKernels<T, Dim> adjoint_;
   std::vector<std::unique_ptr<MaterialAdjoint<T, Dim>>> material_adjoints_;
   GridAdjoint<T, Dim> grid_adjoint_;
+  std::size_t room_for_sums_ = 0;                  // bytes in a kept state
   std::vector<Array<T>> mass_;                     // [body][id less the first]
   std::shared_ptr<const Epoch> epoch_;             // of the present state, unless it has been sorted since:
   std::uint64_t epoch_sorts_ = ~std::uint64_t(0);  // sorts_ when it was

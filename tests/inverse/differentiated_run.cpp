@@ -182,7 +182,7 @@ TEST_CASE("gradients of a run that sorts its particles on the way agree with cen
         steps, observer);
 }
 
-TEST_CASE("a gradient has the same bits whatever memory and disk it is given") {
+TEST_CASE("a gradient has the same bits whatever memory and disk it is given, and whether sums of nodes are kept or made again") {
   Model model = scene(2, deck::Transfer::apic, water(), sand(), deck::ContactKind::friction);
   model.time.step = {};
   model.time.cfl = 0.5;
@@ -191,11 +191,25 @@ TEST_CASE("a gradient has the same bits whatever memory and disk it is given") {
   REQUIRE(steps.dt.size() > 30);
   const ModelGradient whole = gradient_of(model, steps, observer, steps.dt.size());
   struct Case {
-    std::size_t snapshots, on_disk;
+    std::size_t snapshots, on_disk, blocks;
   };
-  for (const Case c : {Case{2, 0}, {3, 0}, {5, 0}, {11, 0}, {2, 1}, {5, 4}, {11, 3}, {steps.dt.size(), 20}}) {
-    INFO(c.snapshots << " snapshots, " << c.on_disk << " of them on disk");
-    const ModelGradient part = gradient_of(model, steps, observer, c.snapshots, c.on_disk);
+  const std::size_t all = steps.dt.size(), most = steps.most_blocks;
+  REQUIRE(most > 2);
+  for (const Case c : {Case{2, 0, most},
+                       {3, 0, most},
+                       {5, 0, most},
+                       {11, 0, most},
+                       {2, 1, most},
+                       {5, 4, most},
+                       {11, 3, most},
+                       {all, 20, most},
+                       {all, 0, 0},
+                       {all, 0, 2},
+                       {all, 0, most - 1}}) {
+    INFO(c.snapshots << " snapshots, " << c.on_disk << " of them on disk, room for the sums of " << c.blocks << " blocks");
+    StepSequence with_room = steps;
+    with_room.most_blocks = c.blocks;
+    const ModelGradient part = gradient_of(model, with_room, observer, c.snapshots, c.on_disk);
     CHECK(part.gravity == whole.gravity);
     CHECK(part.coefficient == whole.coefficient);
     CHECK(part.bodies[0].material == whole.bodies[0].material);

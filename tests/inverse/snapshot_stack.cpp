@@ -64,6 +64,18 @@ TEST_CASE("what was fetched from the disk is not written again") {
   CHECK(top_is(stack, std::byte(9)));
 }
 
+TEST_CASE("what was fetched from the disk and changed is written again") {
+  SnapshotStack stack;
+  stack.prepare(bytes, 1, 2);
+  for (int k = 0; k < 3; ++k) push(stack, std::byte(k));
+  stack.pop();
+  std::fill_n(stack.change_top(), bytes, std::byte(9));
+  push(stack, std::byte(2)), stack.pop();
+  CHECK(top_is(stack, std::byte(9)));
+  stack.pop();
+  CHECK(top_is(stack, std::byte(0)));
+}
+
 TEST_CASE("the file of snapshots has no name") {
   const testing::Scratch scratch;
   SnapshotStack stack(scratch / "");

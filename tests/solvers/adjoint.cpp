@@ -66,7 +66,7 @@ double mismatch(const Model& model, double dt) {
       Jv_w += slow.derivative[0] * bar, Jv2 += std::pow(slow.derivative[0] / scale, 2), w2 += w * w;
     });
   solver.go_back(*start, numbers.data());
-  solver.step_adjoint(dt);
+  solver.step_adjoint(dt, *start, numbers.data());
   double v_Jtw = 0;
   for (std::size_t b = 0; b < direction.size(); ++b) {
     std::vector<double> v;
