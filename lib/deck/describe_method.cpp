@@ -74,7 +74,7 @@ void describe(Description<Time>& d) {
       .to(1)
       .when(
           {"step"}, [](const Time& time) { return !time.step; }, "an automatic step")
-      .help("Part of a cell that the fastest wave may cross in one step.");
+      .help("Part of a cell that the fastest wave may cross in one step. With linear splines the default is 0.25.");
   d.check({"step", "end"}, [](const Time& time, const described::Place& place) {
     if (time.step && *time.step > time.end)
       place.problem("step", "is longer than the run, " + described::shown_number(time.end) + " s; make it shorter");

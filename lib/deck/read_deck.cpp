@@ -53,7 +53,8 @@ std::vector<std::string> default_fields(const Deck& deck) {
 }
 
 /// Defaults that depend on other parts of the deck.
-void fill_defaults(Deck& deck) {
+void fill_defaults(Deck& deck, const described::Place& root) {
+  if (deck.method.basis == Basis::linear && !(root.given("time") && root.key("time").given("cfl"))) deck.time.cfl = linear_cfl;
   if (deck.output.directory.empty()) deck.output.directory = "out/" + std::filesystem::path(deck.path).stem().string();
   if (!deck.output.gauge_interval) deck.output.gauge_interval = deck.output.interval;
   if (!deck.output.fields) deck.output.fields = default_fields(deck);
@@ -85,7 +86,7 @@ Deck read_text(const std::string& path, const std::string& text, const std::vect
   const described::Place root{document.root(), "", reader};
   described::Codec<Deck>::read(deck, root, {});
   if (document.root().is_object()) {
-    fill_defaults(deck);
+    fill_defaults(deck, root);
     check_scene(deck, root);
     check_gauges(deck, root);
     check_inverse(deck, root);

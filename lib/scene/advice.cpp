@@ -126,12 +126,14 @@ class Adviser {
     const double number = step_.dt / step_.limit;
     constexpr double small = 0.1, linear_limit = 0.3;
     if (model_.time.step && number < small)
-      say("the fixed step is " + number_text(std::round(1000 * number) / 1000) +
-          " of what a wave takes to cross a cell; \"auto\" takes 0.4 of it, so fewer steps, and fewer are better: sixteen times as many "
+      say("the fixed step is " + number_text(std::round(1000 * number) / 1000) + " of what a wave takes to cross a cell; \"auto\" takes " +
+          number_text(model_.time.cfl) +
+          " of it, so fewer steps, and fewer are better: sixteen times as many "
           "had "
           "three to eight times the error at one cell size (docs/validation.md, \"Manufactured solution\")");
     if (model_.method.basis == deck::Basis::linear && number > linear_limit)
-      say("with linear splines steps above 0.3 of what a wave takes to cross a cell were unstable in some scenes; set /time/cfl to 0.25 "
+      say("with linear splines steps above 0.3 of what a wave takes to cross a cell were unstable in some scenes; set /time/cfl to 0.25 or "
+          "leave it out "
           "(docs/stability.md, \"Time step against the speed of waves\")");
   }
 

@@ -24,6 +24,13 @@ std::vector<Problem> problems_of(const std::vector<std::string>& assignments) {
 
 }  // namespace
 
+TEST_CASE("the automatic step is shorter with linear splines, unless the deck says how long") {
+  const auto cfl = [](const std::vector<std::string>& assignments) { return read_text(test::small_deck, assignments).time.cfl; };
+  CHECK(cfl({R"(/method={"basis": "cubic"})"}) == 0.4);
+  CHECK(cfl({R"(/method={"basis": "linear"})"}) == 0.25);
+  CHECK(cfl({R"(/method={"basis": "linear"})", "/time/cfl=0.35"}) == 0.35);
+}
+
 TEST_CASE("keys that are not given have their defaults") {
   const deck::Deck d = read_text(test::small_deck);
   CHECK(d.dimension() == 2);
