@@ -235,12 +235,13 @@ MemoryPlan plan_gradient(const Model& model, const StepSequence& steps, const Ro
   constexpr std::size_t least = 2;
   const std::size_t wanted = std::max<std::size_t>(plan.steps, 1);
   const Split split = split_snapshots(*solver, wanted, {room.memory - std::min(fixed, room.memory), room.disk});
+  constexpr double mib = 1 << 20, varying = 1;  // MiB: what is resident is not quite the same in the next run
   if (split.all() < least && plan.steps > 1)
     throw Error(ExitCode::deck,
                 fmt::format("/inverse/memory: {:.1f} MiB are too few: a reverse run of this scene takes {:.1f} MiB and at least "
                             "{} snapshots of {:.2f} MiB; give it {:.0f} MiB or more",
-                            double(room.memory) / 1048576, double(fixed) / 1048576, least, double(plan.snapshot_bytes) / 1048576,
-                            std::ceil(double(fixed + least * plan.snapshot_bytes) / 1048576)));
+                            double(room.memory) / mib, double(fixed) / mib, least, double(plan.snapshot_bytes) / mib,
+                            std::ceil(double(fixed + least * plan.snapshot_bytes) / mib + varying)));
   plan.snapshots = std::max<std::size_t>(split.all(), 1), plan.on_disk = split.on_disk;
   plan.disk_bytes = plan.on_disk * solver->kept_bytes();
   plan.peak_bytes = fixed + plan.snapshots * plan.snapshot_bytes - plan.disk_bytes;

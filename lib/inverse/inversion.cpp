@@ -2,6 +2,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/error.hpp"
@@ -15,7 +16,6 @@ constexpr std::size_t most_standard_errors = 20;  // unknowns up to which they a
 constexpr std::size_t most_gauss_newton = 100;    // unknowns: a Jacobian of more would cost more than many gradients
 constexpr std::size_t most_shown = 4;             // numbers in the line of an iteration
 constexpr double widest_spacing = 0.1;            // of differences for standard errors, in parts of the variable's scale
-constexpr int most_passes = 5;                    // until standard errors and the spacing of their differences agree
 
 void check_size(const deck::Optimizer& optimizer, std::size_t unknowns) {
   if (std::holds_alternative<deck::GaussNewton>(optimizer) && unknowns > most_gauss_newton)
@@ -96,26 +96,32 @@ void Inversion::tell_evaluation() {
                last.gradient_seconds);
 }
 
-/// A standard error says how far an unknown may move until the data object: the differences that it comes from should reach as far, or
-/// where the loss is rough on closer scales they would tell of that and not of the data.
+/// A standard error says how far an unknown may move until the data object. The differences that it comes from should reach as far: where
+/// the loss is rough on closer scales they would tell of that, not of the data. Hence the larger of the errors from wide differences and
+/// from differences as wide as those errors. A run beside the best values that becomes unstable tells nothing of wide ones.
 std::optional<Variables> Inversion::errors_over_themselves(const Variables& best) {
   const SearchSpace& space = unknowns_.space();
-  Variables spacing = space.scale;
-  for (double& h : spacing) h *= least_jacobian_spacing;
-  for (int pass = 1;; ++pass) {
-    const auto errors = standard_errors(loss_.statistics(best, spacing), Variables(best.size(), 1.0));
+  const auto errors_over = [&](const Variables& spacing) {
+    return standard_errors(loss_.statistics(best, spacing), Variables(best.size(), 1.0));
+  };
+  const auto spacing_within = [&](const Variables& reach) {
+    Variables spacing = space.scale;
+    for (std::size_t i = 0; i < spacing.size(); ++i)
+      spacing[i] *= std::clamp(reach[i] / space.scale[i], least_jacobian_spacing, widest_spacing);
+    return spacing;
+  };
+  Variables wide(best.size(), 0.0);
+  try {
+    const auto errors = errors_over(spacing_within(space.scale));
     if (!errors) return std::nullopt;
-    bool wider = false;
-    for (std::size_t i = 0; i < spacing.size(); ++i) {
-      const double reach = std::min((*errors)[i], widest_spacing * space.scale[i]);
-      wider |= reach > 2 * spacing[i];
-      spacing[i] = std::max(spacing[i], reach);
-    }
-    if (wider && pass < most_passes) continue;
-    Variables of_numbers = unknowns_.slopes(best);
-    for (std::size_t i = 0; i < of_numbers.size(); ++i) of_numbers[i] = std::abs(of_numbers[i]) * (*errors)[i];
-    return of_numbers;
+    wide = *errors;
+  } catch (const NumericsError&) {
   }
+  auto errors = errors_over(spacing_within(wide));
+  if (!errors) return std::nullopt;
+  const Variables slopes = unknowns_.slopes(best);
+  for (std::size_t i = 0; i < best.size(); ++i) (*errors)[i] = std::abs(slopes[i]) * std::max((*errors)[i], wide[i]);
+  return errors;
 }
 
 void Inversion::find_standard_errors() {

@@ -18,8 +18,8 @@ from scenes import SCENES
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 KEPT = ROOT / "docs" / "horizons"
 PROGRAM = os.environ.get("JAXMPM", str(ROOT / "build" / "jaxmpm"))
-STEPS = (100, 300, 1000, 2000, 5000, 10000, 20000)
-QUICK = (100, 300, 1000)
+STEPS = (100, 500, 2000, 5000, 10000, 20000)
+QUICK = (100, 500)
 
 
 def set_value(scene, pointer, value):
@@ -83,7 +83,7 @@ def study(name, horizons):
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("scenes", nargs="*", metavar="SCENE", help=f"of {', '.join(SCENES)}; all when none is named")
-    parser.add_argument("--quick", action="store_true", help="runs of up to 1,000 steps; nothing is kept")
+    parser.add_argument("--quick", action="store_true", help="runs of up to 500 steps; nothing is kept")
     arguments = parser.parse_args()
     unknown = [name for name in arguments.scenes if name not in SCENES]
     if unknown:

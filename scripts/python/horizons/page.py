@@ -9,7 +9,7 @@ HEAD = """# Gradients over long runs
 
 Made by `scripts/study-horizons` from the figures kept in [horizons/](horizons/); not to be edited by hand. An exact gradient says what an infinitely small change does. A search asks what a change of a useful size does. Over short runs both are the same; over long ones a flow may
 amplify small changes until the first says nothing of the second. Here four scenes of one unknown run for 100 to 20,000 steps. What is seen is the last state alone: the *paths* (positions of all particles), or a *mean* (the velocity of all the water; the *profile* of the heap). The loss is half the sum of
-squares of differences from a run with the true value. At seven values, none of them the truth, the exact gradient is compared with the slope of the loss over a distance, between the neighbours to both sides.
+squares of differences from a run with the true value. At the inner five of seven values, none of them the truth, the exact gradient is compared with the slope of the loss over a distance, between the neighbours to both sides.
 """
 
 

@@ -26,7 +26,7 @@ MEAN = {"kind": "gauge", "gauge": "mean"}
 PROFILE = {"kind": "profile", "body": "m"}
 
 
-def spread(low, high, count=9):
+def spread(low, high, count=7):
     return [low + (high - low) * k / (count - 1) for k in range(count)]
 
 
