@@ -16,7 +16,8 @@ namespace {
 /// Numbers that enter the step or the initial fields at fixed seeding, by the pattern of their pointer.
 bool may_be_unknown(const std::string& pointer) {
   static const std::regex pattern(
-      "/gravity/[0-9]+|/method/flip_fraction|/parameters/[^/]+|/materials/[^/]+/[^/]+|/bodies/[0-9]+/velocity/([0-9]+(/mlp)?|particles)|"
+      "/gravity/[0-9]+|/body_force/[0-9]+|/method/(flip_fraction|damping)|/parameters/[^/]+|/materials/[^/]+/[^/]+|/bodies/[0-9]+/velocity/"
+      "([0-9]+(/mlp)?|particles)|"
       "/bodies/[0-9]+/initial_stress/k0|/walls/[^/]+/(coefficient|segments/[0-9]+/coefficient)|/obstacles/[0-9]+/coefficient");
   return std::regex_match(pointer, pattern);
 }

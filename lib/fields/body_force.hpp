@@ -19,8 +19,12 @@ class BodyForce {
   BodyForce(const std::vector<deck::Formula>& components, int dim, const std::map<std::string, double>& parameters);
   ~BodyForce();
 
-  /// Names of the deck's parameters that it depends on.
-  std::vector<std::string> parameters() const;
+  /// Names of the deck's parameters that it depends on, each once.
+  const std::vector<std::string>& parameters() const { return names_; }
+  /// How many derivatives it has: by a number added to each of three components, then by parameters().
+  std::size_t slopes() const { return 3 + names_.size(); }
+  /// Text of the derivative of a component by a parameter. Throws DeckError where it has none (derivative_text()).
+  std::string slope_text(std::size_t component, const std::string& parameter) const;
 
   /// The right to evaluate the force, in one thread.
   class Loan {
@@ -31,6 +35,8 @@ class BodyForce {
     Loan& operator=(const Loan&) = delete;
     /// Acceleration (m/s²) at a place (m, deck coordinates) and a time (s).
     std::array<double, 3> at(const std::array<double, 3>& place, double time) const;
+    /// Adds the slopes() of `by` · at(place, time) to `sums`: zero by a parameter by which a component has no derivative.
+    void add_slopes(const std::array<double, 3>& place, double time, const std::array<double, 3>& by, double* sums) const;
 
    private:
     const BodyForce& from_;
@@ -39,10 +45,12 @@ class BodyForce {
 
  private:
   std::unique_ptr<ForceExpressions> parsed() const;
+  void parse_slopes(ForceExpressions& expressions) const;
 
   std::vector<deck::Formula> components_;
   int dim_;
   std::map<std::string, double> parameters_;
+  std::vector<std::string> names_;
   mutable std::mutex mutex_;
   mutable std::vector<std::unique_ptr<ForceExpressions>> idle_;  // as many as threads have asked for at once
 };

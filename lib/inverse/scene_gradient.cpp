@@ -25,16 +25,16 @@ Parts parts_of(const std::string& pointer) {
 class SceneGradient {
  public:
   SceneGradient(const deck::Deck& deck, const Model& model, const ModelGradient& gradient)
-      : deck_(deck), gradient_(gradient), initial_(deck, model, initial_states(gradient)) {
-    if (model.body_force) in_body_force_ = model.body_force->parameters();
-  }
+      : deck_(deck), gradient_(gradient), body_force_(model.body_force.get()), initial_(deck, model, initial_states(gradient)) {}
 
   std::vector<double> by(const std::string& pointer) const {
     const Parts parts = parts_of(pointer);
     try {
       if (parts.at(0) == "gravity") return {by_gravity(std::stoul(parts.at(1)))};
       if (parts[0] == "method" && parts.at(1) == "flip_fraction") return {gradient_.flip_fraction};
-      if (parts[0] == "parameters") return {by_parameter(parts.at(1), pointer)};
+      if (parts[0] == "method" && parts.at(1) == "damping") return {by_damping(pointer)};
+      if (parts[0] == "body_force") return {by_body_force(std::stoul(parts.at(1)), pointer)};
+      if (parts[0] == "parameters") return {by_parameter(parts.at(1))};
       if (parts[0] == "materials") return {by_material(parts.at(1), parts.at(2), pointer)};
       if (parts[0] == "bodies") return by_body(std::stoul(parts.at(1)), parts, pointer);
       if (parts[0] == "walls") return {by_wall(parts)};
@@ -58,10 +58,22 @@ class SceneGradient {
 
   double by_gravity(std::size_t axis) const { return gradient_.gravity.at(axis) + initial_.by_weight(deck_.gravity.at(axis)); }
 
-  double by_parameter(const std::string& name, const std::string& pointer) const {
-    if (std::find(in_body_force_.begin(), in_body_force_.end(), name) != in_body_force_.end())
-      throw DeckError(pointer, "is used in /body_force, by which no derivative is computed; choose another unknown");
-    return initial_.by_parameter(name);
+  double by_damping(const std::string& pointer) const {
+    if (deck_.method.damping > 0) return gradient_.damping;
+    throw DeckError(pointer, "is 0: the run is then without damping, and has no derivative by it; start above 0");
+  }
+  double by_body_force(std::size_t axis, const std::string& pointer) const {
+    if (!std::holds_alternative<double>(deck_.body_force.at(axis))) refuse(pointer);
+    return gradient_.body_force.at(axis);
+  }
+  double by_parameter(const std::string& name) const {
+    const double by_initial = initial_.by_parameter(name);
+    if (!body_force_) return by_initial;
+    const Parts& names = body_force_->parameters();
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found == names.end()) return by_initial;
+    for (std::size_t axis = 0; axis < deck_.body_force.size(); ++axis) body_force_->slope_text(axis, name);  // throws where there is none
+    return by_initial + gradient_.body_force.at(3 + static_cast<std::size_t>(found - names.begin()));
   }
   double by_material(const std::string& name, const std::string& key, const std::string& pointer) const {
     const deck::Material& material = deck_.materials.at(name);
@@ -105,8 +117,8 @@ class SceneGradient {
 
   const deck::Deck& deck_;
   const ModelGradient& gradient_;
+  const BodyForce* body_force_;  // null where the deck has none
   InitialGradient initial_;
-  Parts in_body_force_;  // names of parameters
 };
 
 }  // namespace

@@ -1,22 +1,26 @@
 #include "solvers/grid_adjoint.hpp"
 
 #include "core/parallel_host.hpp"
+#include "fields/body_force.hpp"
 
 namespace jaxmpm {
 
-void GridBars::clear(std::size_t segments, std::size_t obstacles) {
-  gravity = {};
-  segment.assign(segments, 0), obstacle.assign(obstacles, 0);
+void GridBars::clear(const Model& model, std::size_t segments) {
+  gravity = {}, damping = 0;
+  segment.assign(segments, 0), obstacle.assign(model.obstacles.size(), 0);
+  body_force.assign(model.body_force ? model.body_force->slopes() : 0, 0);
 }
 
-void GridBars::add(const GridBars& other, double gravity_factor) {
-  for (std::size_t c = 0; c < 3; ++c) gravity[c] += gravity_factor * other.gravity[c];
-  for (std::size_t k = 0; k < segment.size(); ++k) segment[k] += other.segment[k];
-  for (std::size_t k = 0; k < obstacle.size(); ++k) obstacle[k] += other.obstacle[k];
+void GridBars::add(const GridBars& block, double dt, double by_damping) {
+  for (std::size_t c = 0; c < 3; ++c) gravity[c] += dt * block.gravity[c];
+  damping += by_damping * block.damping;
+  for (std::size_t k = 0; k < body_force.size(); ++k) body_force[k] += dt * block.body_force[k];
+  for (std::size_t k = 0; k < segment.size(); ++k) segment[k] += block.segment[k];
+  for (std::size_t k = 0; k < obstacle.size(); ++k) obstacle[k] += block.obstacle[k];
 }
 
 template <class T, int Dim>
-void GridAdjoint<T, Dim>::update(const Blocks<Dim>& blocks, const T* arenas, double dt) {
+void GridAdjoint<T, Dim>::update(const Blocks<Dim>& blocks, const T* arenas, double dt, double time) {
   const GridConstants<T, Dim> constants = forward_.constants(dt);
   const ContactBlocks<T, Dim>& contact = forward_.contact_blocks();
   const std::size_t own_size = kernels_.own_size;
@@ -25,10 +29,11 @@ void GridAdjoint<T, Dim>::update(const Blocks<Dim>& blocks, const T* arenas, dou
   parallel_for_host("jaxmpm::grid_adjoint", blocks.count(), [&](std::size_t b) {
     T* own = own_.data() + b * own_size;
     kernels_.sum(blocks, b, arenas, own);
-    block_[b].clear(segments(), model_.obstacles.size());
+    block_[b].clear(model_, segments());
     const bool at_wall = contact.wall_slot()[b] >= 0;
     const std::vector<NearFace> near_face = at_wall ? wall_block_adjoint(blocks, b, constants) : std::vector<NearFace>{};
     if (contact.obstacles(b)) obstacles_adjoint(blocks, b, constants);
+    if (model_.body_force || model_.method.damping > 0) constants_adjoint(blocks, b, constants, time);
     const V by_pull = adjoint_.update_nodes(forward_.sums(b), constants, own);
     for (int c = 0; c < Dim; ++c) block_[b].gravity[std::size_t(c)] = double(by_pull[c]);
     for (const NearFace& node : near_face) {
@@ -38,8 +43,47 @@ void GridAdjoint<T, Dim>::update(const Blocks<Dim>& blocks, const T* arenas, dou
     }
   });
   parallel_for_host("jaxmpm::walls_adjoint", contact.wall_blocks().size(),
-                    [&](std::size_t w) { collect_wall_block(blocks, contact.wall_blocks()[w], constants); });
-  for (const GridBars& block : block_) total_.add(block, dt);  // in the order of blocks
+                    [&](std::size_t w) { collect_wall_block(blocks, contact.wall_blocks()[w], constants, time); });
+  const double slowing = 1 + model_.method.damping * dt;                                 // the part taken is ζΔt/(1 + ζΔt)
+  for (const GridBars& block : block_) total_.add(block, dt, dt / (slowing * slowing));  // in the order of blocks
+}
+
+/// (p + impulse)/m + Δt (g + b): the velocity of a node before damping takes its part.
+template <class T, int Dim>
+auto GridAdjoint<T, Dim>::undamped(const T* sum, const V& pull) const -> V {
+  V v;
+  for (int c = 0; c < Dim; ++c) v[c] = (sum[1 + c] + (kernels_.planes == 2 ? sum[cells * 4 + 1 + c] : T(0))) / sum[0] + pull[c];
+  return v;
+}
+
+/// Adds the derivatives by the body force's numbers, of one by Δt b at a node.
+template <class T, int Dim>
+void GridAdjoint<T, Dim>::add_by_pull(std::size_t b, const Node& node, const V& by_pull, double time) {
+  if (!model_.body_force) return;
+  Point place{}, by{};
+  for (std::size_t d = 0; d < Dim; ++d) {
+    place[d] = model_.domain_min[d] + model_.cell_size * node[d];
+    by[d] = double(by_pull[int(d)]);
+  }
+  BodyForce::Loan(*model_.body_force).add_slopes(place, time, by, block_[b].body_force.data());
+}
+
+/// Derivatives by damping and by the body force's numbers, at the nodes of a block that no wall is near.
+template <class T, int Dim>
+void GridAdjoint<T, Dim>::constants_adjoint(const Blocks<Dim>& blocks, std::size_t b, const GridConstants<T, Dim>& constants, double time) {
+  const Node first = first_node<Dim>(blocks.index[b]);
+  for (int own = 0; own < cells; ++own) {
+    const T *sum = forward_.sums(b) + 4 * own, *bar = own_.data() + b * kernels_.own_size + 4 * own;
+    if (!(sum[0] > constants.mass_cut_off)) continue;
+    const V v = undamped(sum, forward_.pull(constants, b, own));
+    V by_pull;
+    for (int c = 0; c < Dim; ++c) {
+      const T by_v = bar[1 + c] + (kernels_.planes == 2 ? bar[cells * 4 + 1 + c] : T(0));
+      block_[b].damping -= double(by_v * v[c]);
+      by_pull[c] = by_v - constants.damped * by_v;
+    }
+    add_by_pull(b, node_of<Dim>(first, own), by_pull, time);
+  }
 }
 
 /// Adjoint of the obstacles at one node, which act one after another: `start` is the velocity before the first, `bar` is by the velocity
@@ -79,10 +123,8 @@ void GridAdjoint<T, Dim>::obstacles_adjoint(const Blocks<Dim>& blocks, std::size
     if (at_wall && forward_.walls().near_face(node_of<Dim>(first, int(node.node)))) continue;
     T* by_v = bars + 4 * node.node + 1;
     const T* by_change = bars + cells * 4 + 4 * node.node + 1;
-    const V pull = forward_.pull(constants, b, int(node.node));
-    V start, bar;
+    V start = undamped(sum, forward_.pull(constants, b, int(node.node))), bar;
     for (int c = 0; c < Dim; ++c) {
-      start[c] = (sum[1 + c] + (flip ? sum[cells * 4 + 1 + c] : T(0))) / sum[0] + pull[c];
       start[c] -= constants.damped * start[c];
       bar[c] = by_v[c] + (flip ? by_change[c] : T(0));  // Δv follows v through the contact
     }
@@ -154,10 +196,12 @@ auto GridAdjoint<T, Dim>::take_out(const T* sums, T cut_off, int own, T* bars, V
 
 /// Adds the halos that reach a wall block, in the order of neighbours: P = (p + impulse + m Δt (g + b))/(1 + ζΔt).
 template <class T, int Dim>
-void GridAdjoint<T, Dim>::collect_wall_block(const Blocks<Dim>& blocks, std::size_t b, const GridConstants<T, Dim>& constants) {
+void GridAdjoint<T, Dim>::collect_wall_block(const Blocks<Dim>& blocks, std::size_t b, const GridConstants<T, Dim>& constants,
+                                             double time) {
   const Node first = first_node<Dim>(blocks.index[b]);
   T* bars = own_.data() + b * kernels_.own_size;
   const T* sums = forward_.sums(b);
+  std::array<V, cells> by_pull{};
   for (int m = 0; m < around; ++m) {
     const int other = blocks.neighbour[b * around + std::size_t(m)];
     const int slot = other < 0 ? -1 : forward_.contact_blocks().wall_slot()[std::size_t(other)];
@@ -179,10 +223,14 @@ void GridAdjoint<T, Dim>::collect_wall_block(const Blocks<Dim>& blocks, std::siz
         by_sums[0] += by_undamped * pull[c];
         by_sums[1 + c] += by_undamped;
         if (kernels_.planes == 2) by_sums[cells * 4 + 1 + c] += by_undamped;
+        by_pull[std::size_t(own)][c] += sums[4 * own] * by_undamped;
         block_[b].gravity[std::size_t(c)] += double(sums[4 * own] * by_undamped);
+        const T momentum = sums[4 * own + 1 + c] + (kernels_.planes == 2 ? sums[cells * 4 + 4 * own + 1 + c] : T(0));
+        block_[b].damping -= double(by.momentum[c] * (momentum + sums[4 * own] * pull[c]));
       }
     }
   }
+  for (int own = 0; own < cells; ++own) add_by_pull(b, node_of<Dim>(first, own), by_pull[std::size_t(own)], time);
 }
 
 template class GridAdjoint<double, 2>;

@@ -8,11 +8,14 @@ namespace jaxmpm {
 
 /// Derivatives by the constants of the grid update.
 struct GridBars {
-  Point gravity{};               // per m/s²
-  std::vector<double> segment;   // friction coefficients of all faces' segments, in the order of WallTable
-  std::vector<double> obstacle;  // coefficients of the obstacles, in deck order
-  void clear(std::size_t segments, std::size_t obstacles);
-  void add(const GridBars& other, double gravity_factor);
+  Point gravity{};                 // per m/s²
+  double damping = 0;              // per 1/s
+  std::vector<double> body_force;  // BodyForce::slopes(), per unit of their numbers
+  std::vector<double> segment;     // friction coefficients of all faces' segments, in the order of WallTable
+  std::vector<double> obstacle;    // coefficients of the obstacles, in deck order
+  void clear(const Model& model, std::size_t segments);
+  /// Adds those of a block, which are by Δt g, Δt b and by the part of the velocity that damping takes.
+  void add(const GridBars& block, double dt, double damping);
 };
 
 template <class T, int Dim>
@@ -24,11 +27,11 @@ class GridAdjoint {
       : model_(model), kernels_(kernels), adjoint_(adjoint), forward_(forward) {}
 
   /// From derivatives by what the tiles gathered (their arenas) to those by what they scattered: afterwards by_sums() holds {m̄, p̄} (and
-  /// FLIP's {–, impulse}) of every active block. Adds to bars().
-  void update(const Blocks<Dim>& blocks, const T* arenas, double dt);
+  /// FLIP's {–, impulse}) of every active block. Adds to bars(). `time`: that of the step's beginning, s.
+  void update(const Blocks<Dim>& blocks, const T* arenas, double dt, double time);
   const T* by_sums() const { return own_.data(); }
   const GridBars& bars() const { return total_; }
-  void clear_bars() { total_.clear(segments(), model_.obstacles.size()); }
+  void clear_bars() { total_.clear(model_, segments()); }
 
  private:
   using Node = Index<Dim>;
@@ -48,10 +51,13 @@ class GridAdjoint {
     Sum direct;
   };
 
+  V undamped(const T* sum, const V& pull) const;
+  void add_by_pull(std::size_t b, const Node& node, const V& by_pull, double time);
+  void constants_adjoint(const Blocks<Dim>& blocks, std::size_t b, const GridConstants<T, Dim>& constants, double time);
   void obstacles_adjoint(const Blocks<Dim>& blocks, std::size_t b, const GridConstants<T, Dim>& constants);
   Sum take_out(const T* sums, T cut_off, int own, T* bars, V& bar) const;
   std::vector<NearFace> wall_block_adjoint(const Blocks<Dim>& blocks, std::size_t b, const GridConstants<T, Dim>& constants);
-  void collect_wall_block(const Blocks<Dim>& blocks, std::size_t b, const GridConstants<T, Dim>& constants);
+  void collect_wall_block(const Blocks<Dim>& blocks, std::size_t b, const GridConstants<T, Dim>& constants, double time);
   void obstacle_chain(std::size_t block, int own, const V& start, V& bar, GridBars& bars) const;
   static int halo_node(const Node& node, const Node& first);
 

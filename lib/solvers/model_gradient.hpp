@@ -28,6 +28,8 @@ struct BodyGradient {
 struct ModelGradient {
   Point gravity{};  // per m/s²
   double flip_fraction = 0;
+  double damping = 0;                              // per 1/s
+  std::vector<double> body_force;                  // BodyForce::slopes()
   std::array<std::vector<double>, 6> coefficient;  // of the faces' segments, as FaceLaw::coefficient
   std::vector<double> obstacle_coefficient;        // in deck order
   std::vector<BodyGradient> bodies;                // in deck order

@@ -84,7 +84,7 @@ void ReversibleStep<T, Dim>::g2p_adjoint() {
 
 template <class T, int Dim>
 void ReversibleStep<T, Dim>::update_grid_adjoint(double dt) {
-  grid_adjoint_.update(this->blocks_, this->arenas_.data(), dt);
+  grid_adjoint_.update(this->blocks_, this->arenas_.data(), dt, this->numbers_.time);
 }
 
 template <class T, int Dim>
@@ -260,7 +260,8 @@ template <class T, int Dim>
 ModelGradient ReversibleStep<T, Dim>::gradient() const {
   ModelGradient g;
   const GridBars& grid = grid_adjoint_.bars();
-  g.gravity = grid.gravity, g.obstacle_coefficient = grid.obstacle, g.flip_fraction = flip_fraction_;
+  g.gravity = grid.gravity, g.damping = grid.damping, g.body_force = grid.body_force;
+  g.obstacle_coefficient = grid.obstacle, g.flip_fraction = flip_fraction_;
   std::size_t segment = 0;
   for (std::size_t f = 0; f < 2 * Dim; ++f)
     for (std::size_t k = 0; k < this->model_.faces[f].coefficient.size(); ++k) g.coefficient[f].push_back(grid.segment[segment++]);

@@ -1,7 +1,7 @@
 """Deletes one term of an adjoint after another, in a copy of the sources, and shows which test notices.
 
 The list is tests/mutations.txt; a mutation that no test notices fails the whole. Each takes about a minute on one core; `scripts/mutations --from N`
-goes on at number N, `--every K` takes each K-th only.
+goes on at number N, `--every K` takes each K-th only, `--containing TEXT` those with TEXT in their line.
 """
 import argparse
 import os
@@ -79,6 +79,7 @@ def main():
     parser.add_argument("folder", type=pathlib.Path)
     parser.add_argument("--from", dest="first", type=int, default=1)
     parser.add_argument("--every", type=int, default=1)
+    parser.add_argument("--containing", default="")
     options = parser.parse_args()
     mutations = read_list()
     copy = Copy(options.folder)
@@ -87,7 +88,7 @@ def main():
         sys.exit(f"the unchanged sources fail already: {clean}")
     missed = 0
     for number, mutation in enumerate(mutations, 1):
-        if number < options.first or (number - options.first) % options.every:
+        if number < options.first or (number - options.first) % options.every or options.containing not in mutation[1]:
             continue
         begun = time.monotonic()
         noticed = copy.mutate(*mutation)

@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <map>
 
+#include "fields/body_force.hpp"
 #include "inverse/checkpoint_schedule.hpp"
 #include "solvers/scenes.hpp"
 
@@ -165,6 +166,47 @@ TEST_CASE("gradients by a granular material's numbers agree with central differe
   all["rubber's Young's modulus"] = material_number(1, &deck::NeoHookean::youngs_modulus, 1, "youngs_modulus", g);
   all["rubber's Poisson's ratio"] = material_number(1, &deck::NeoHookean::poisson_ratio, 1e-7, "poisson_ratio", g);
   check(model, all, steps, observer);
+}
+
+TEST_CASE("gradients by damping and by the numbers of a body force agree with central differences") {
+  const int dim = GENERATE(2, 3);
+  const auto transfer = GENERATE(deck::Transfer::apic, deck::Transfer::flip);
+  const auto kind = GENERATE(deck::ContactKind::friction, deck::ContactKind::no_slip);
+  CAPTURE(dim, int(transfer), int(kind));
+  struct Numbers {
+    double damping, upward, a, k;
+  };
+  const auto model_with = [&](const Numbers& n) {
+    Model model = scene(dim, transfer, water(2), elastic(), kind);
+    const std::vector<deck::Formula> components{"a*sin(k*x + 300*t) + abs(y)", n.upward, "k*y"};
+    model.body_force = std::make_shared<const BodyForce>(std::vector<deck::Formula>(components.begin(), components.begin() + dim), dim,
+                                                         std::map<std::string, double>{{"a", n.a}, {"k", n.k}});
+    model.method.damping = n.damping;
+    return model;
+  };
+  const Numbers start{300, 4, 5, 20};
+  const Model model = model_with(start);
+  Everything observer({4e-4, 1e-3});
+  const StepSequence steps = record_run(model, observer, {});
+  const ModelGradient g = gradient_of(model, steps, observer, 4);
+  REQUIRE(model.body_force->parameters() == std::vector<std::string>{"a", "k"});
+  REQUIRE(g.body_force.size() == 5);
+  const auto check_number = [&](double Numbers::*number, double change, double gradient) {
+    double loss[2];
+    for (const int side : {0, 1}) {
+      Numbers other = start;
+      other.*number += side == 0 ? -change : change;
+      replay_run(model_with(other), steps, observer, {});
+      loss[side] = observer.loss();
+    }
+    const double measured = (loss[1] - loss[0]) / (2 * change);
+    INFO("gradient " << gradient << ", central difference " << measured);
+    CHECK(std::abs(gradient - measured) <= 1e-6 * std::abs(measured) + 2e-15 * observer.size() / change);
+  };
+  check_number(&Numbers::damping, 1e-3, g.damping);
+  check_number(&Numbers::upward, 1e-4, g.body_force[1]);
+  check_number(&Numbers::a, 1e-4, g.body_force[3]);
+  check_number(&Numbers::k, 1e-4, g.body_force[4]);
 }
 
 TEST_CASE("gradients of a run that sorts its particles on the way agree with central differences") {

@@ -204,6 +204,8 @@ TEST_CASE("what has no derivative is refused by its pointer") {
                               "/bodies/0/velocity/0", "/bodies/0/velocity/particles", "/walls/x_max/coefficient", "/gravity"})
     refused(deck, pointer, pointer, "no number of the step");
   refused(deck, "/gravity/0", "/gravity/0", "along its axis only");
+  refused(deck, "/method/damping", "/method/damping", "start above 0");
+  refused(deck, "/body_force/0", "/body_force/0", "no number of the step");
   refused(deck::with_assignments(deck, {"/materials/water/viscosity=0"}), "/materials/water/viscosity", "/materials/water/viscosity",
           "start above 0");
   refused(deck::with_assignments(deck, {"/bodies/0/velocity/0=\"abs(u)*k\""}), "/parameters/u", "/bodies/0/velocity/0", "'abs'");
