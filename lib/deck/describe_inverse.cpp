@@ -133,12 +133,20 @@ void describe(Description<GaugeObservation>& d) {
   d.required("gauge", &GaugeObservation::gauge);
   describe_observed(d);
 }
+described::EnumNames<ProfileReading> names_of(ProfileReading) {
+  return {{ProfileReading::surface, "surface"}, {ProfileReading::depth, "depth"}};
+}
+
 void describe(Description<ProfileObservation>& d) {
   d.is("profile",
-       "Surface of a body's deposit, as a height gauge reads it. CSV: x[,y],height[,sigma]. results.h5: the middle of each cell; its "
-       "frames need the density.",
+       "Heights of a body's deposit. CSV: x[,y],height[,sigma]. results.h5: the middle of each cell; its frames need the density.",
        "observation");
   d.required("body", &ProfileObservation::body);
+  d.optional("reading", &ProfileObservation::reading)
+      .help(
+          "How the run's heights are read: \"surface\" as a height gauge does, from where the material fills half of the space; \"depth\" "
+          "from the volume of all material above the ground. Both agree for a heap without hollows; the depth is smooth in the particles' "
+          "places, so that the loss has a useful gradient.");
   d.optional("time", &ProfileObservation::time).unit("s").from(0).word("end");
   describe_observed(d);
 }

@@ -14,6 +14,7 @@ void check_start_value(const Unknown& unknown, double value, const std::string& 
 std::vector<std::string> pointers_of(const std::string& path, const described::Json& resolved);
 
 described::EnumNames<Transform> names_of(Transform);
+described::EnumNames<ProfileReading> names_of(ProfileReading);
 void describe(Description<Prior>& d);
 void describe(Description<Unknown>& d);
 void describe(Description<RandomSelection>& d);

@@ -52,8 +52,10 @@ struct ParticlesObservation : Observed {
 struct GaugeObservation : Observed {
   std::string gauge;
 };
+enum class ProfileReading { surface, depth };
 struct ProfileObservation : Observed {
   std::string body;
+  ProfileReading reading = ProfileReading::surface;
   std::optional<double> time; /* empty: the end */
 };
 using Observation = std::variant<ParticlesObservation, GaugeObservation, ProfileObservation>;

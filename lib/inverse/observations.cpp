@@ -152,7 +152,7 @@ struct Prepare {
     const std::size_t body = body_index(place.model, observed.body, place.pointer + "/body");
     ObservedProfile profile = read_profile(observed, place, body);
     std::vector<std::unique_ptr<Gauge>> gauges;
-    for (const deck::Numbers& at : profile.at) gauges.push_back(make_deposit_gauge(at, place.model, body));
+    for (const deck::Numbers& at : profile.at) gauges.push_back(make_deposit_gauge(at, place.model, body, observed.reading));
     return observe_gauges(ready(std::move(profile.rows), observed), observed.weight, std::move(gauges), place.model);
   }
 };

@@ -128,7 +128,7 @@ ObservedProfile profile_of_results(const deck::ProfileObservation& observed, con
   const Scene scene{{}, bodies, forces, {}};
   ObservedProfile profile;
   for (const deck::Numbers& at : floor_cells(place.model)) {
-    const Sample height = make_deposit_gauge(at, place.model, body)->measure(scene, nullptr);
+    const Sample height = make_deposit_gauge(at, place.model, body, observed.reading)->measure(scene, nullptr);
     add_row(observed, place, at, {std::min(results.frame_times()[frame], place.end), 0, height.values, 1, 0}, profile);
   }
   return profile;

@@ -1,5 +1,6 @@
 #pragma once
 // The registry: one line for each kind of gauge. The kind's documentation for users is in the deck's describe().
+#include "deck/inverse.hpp"
 #include "observe/gauge.hpp"
 
 namespace jaxmpm {
@@ -13,9 +14,9 @@ std::unique_ptr<Gauge> make_gauge(const deck::EnergyGauge& gauge, const Model& m
 std::unique_ptr<Gauge> make_gauge(const deck::MomentumGauge& gauge, const Model& model);
 std::unique_ptr<Gauge> make_gauge(const deck::ParticlesGauge& gauge, const Model& model);
 
-/// Not a gauge of the deck, but what an observation of a deposit's profile reads: the height gauge of one body alone above `at` (horizontal
-/// coordinates, m), which gives the ground where that body is not.
-std::unique_ptr<Gauge> make_deposit_gauge(const deck::Numbers& at, const Model& model, std::size_t body);
+/// Not a gauge of the deck, but what an observation of a deposit's profile reads above `at` (horizontal coordinates, m): the height gauge
+/// of one body alone, or the ground and the volume of that body above it by area; the ground where that body is not.
+std::unique_ptr<Gauge> make_deposit_gauge(const deck::Numbers& at, const Model& model, std::size_t body, deck::ProfileReading reading);
 
 /// Upper ends of the domain, m.
 Point domain_max(const Model& model);

@@ -10,6 +10,12 @@
 namespace jaxmpm {
 namespace {
 
+/// The one body that counts, and how it is read.
+struct Deposit {
+  std::size_t body;
+  deck::ProfileReading reading;
+};
+
 struct ColumnParticle {
   double height, amount;  // along "up", m; V φ(horizontal) / Δh^(dim−1), m
   std::size_t body, particle;
@@ -17,9 +23,8 @@ struct ColumnParticle {
 
 class Height : public Gauge {
  public:
-  /// `deposit`: the one body that counts, and the ground is the reading where it is not; else all bodies do, and the reading is masked
-  /// there.
-  Height(const deck::Numbers& at, const Model& model, std::optional<std::size_t> deposit)
+  /// `deposit`: the ground is the reading where it is not; without one all bodies count, and the reading is masked there.
+  Height(const deck::Numbers& at, const Model& model, std::optional<Deposit> deposit)
       : dim_(model.dim), deposit_(deposit), up_(up_axis(model)), width_(model.cell_size), low_(model.domain_min), high_(domain_max(model)) {
     for (int a = 0, k = 0; a < dim_; ++a) at_[a] = a == up_.axis ? 0 : at[k++];
     const double ends[2] = {up_.sign * low_[up_.axis], up_.sign * high_[up_.axis]};
@@ -30,6 +35,7 @@ class Height : public Gauge {
   FieldSelection needs() const override { return selection({"density"}); }
   Sample measure(const Scene& scene, const std::vector<double>*) const override {
     const std::vector<ColumnParticle> column = particles_above(scene);
+    if (reads_depth()) return {true, {up_.sign * (ground_ + depth(column))}};
     const double step = width_ / 8;
     const auto filled = [&](double u) { return fraction(column, u) >= 0.5; };
     double below = ground_;
@@ -42,6 +48,10 @@ class Height : public Gauge {
   void gradient(const Scene& scene, const Sample& reading, const double* by_values, SnapshotGradient& into) const override {
     const double u = up_.sign * reading.values[0];
     const std::vector<ColumnParticle> column = particles_above(scene);
+    if (reads_depth()) {
+      for (const ColumnParticle& p : column) add_gradient(scene.bodies[p.body], p, 0, up_.sign * by_values[0], into[p.body]);
+      return;
+    }
     if (std::abs(fraction(column, u) - 0.5) > 1e-6) return;
     double slope = 0;
     for (const ColumnParticle& p : column) slope += p.amount * mirrored_spline_slope(u, p.height, ground_, top_, width_).by_x / width_;
@@ -55,7 +65,14 @@ class Height : public Gauge {
   }
 
  private:
-  bool counts(std::size_t body) const { return !deposit_ || *deposit_ == body; }
+  bool counts(std::size_t body) const { return !deposit_ || deposit_->body == body; }
+  bool reads_depth() const { return deposit_ && deposit_->reading == deck::ProfileReading::depth; }
+  /// ∫ f du: volume of all material by area, m.
+  static double depth(const std::vector<ColumnParticle>& column) {
+    double sum = 0;
+    for (const ColumnParticle& p : column) sum += p.amount;
+    return sum;
+  }
   double across(int a, double x) const { return mirrored_spline(at_[a], x, low_[a], high_[a], width_) / width_; }
   /// Adds the derivatives of a particle, given those by its coordinate along the up axis and by its amount.
   void add_gradient(const BodySnapshot& body, const ColumnParticle& p, double by_up, double by_amount, BodySnapshot& into) const {
@@ -107,7 +124,7 @@ class Height : public Gauge {
   }
 
   int dim_;
-  std::optional<std::size_t> deposit_;
+  std::optional<Deposit> deposit_;
   UpAxis up_;
   double width_, top_ = 0, ground_ = 0;  // m; heights count along "up"
   Point low_, high_, at_{};
@@ -119,8 +136,8 @@ std::unique_ptr<Gauge> make_gauge(const deck::HeightGauge& gauge, const Model& m
   return std::make_unique<Height>(gauge.at, model, std::nullopt);
 }
 
-std::unique_ptr<Gauge> make_deposit_gauge(const deck::Numbers& at, const Model& model, std::size_t body) {
-  return std::make_unique<Height>(at, model, body);
+std::unique_ptr<Gauge> make_deposit_gauge(const deck::Numbers& at, const Model& model, std::size_t body, deck::ProfileReading reading) {
+  return std::make_unique<Height>(at, model, Deposit{body, reading});
 }
 
 }  // namespace jaxmpm

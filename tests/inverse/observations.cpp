@@ -209,15 +209,19 @@ TEST_CASE("profiles of a deposit, from CSV and from a frame of another run") {
   CHECK(observer->residuals()[2] == Approx(-0.1));  // the ground, where nothing has come to rest
   check_gradient(*observer, {deposit});
 
-  const deck::Deck other = scene.deck(
-      R"({"kind": "profile", "body": "pool", "time": 0.02, "file": "truth/results.h5", "mask": {"box": {"min": [0, 0], "max": [0.6, 1]}}})");
   // Masses follow from the first frame's density, as in a run.
   std::vector<std::vector<BodySnapshot>> truth{moved(model, 2), deposit};
   for (std::size_t p = 0; p < deposit[0].id.size(); ++p) truth[0][0].density[p] = deposit[0].mass[p] / 0.0025;
   test::write_results(scene.folder.directory("truth"), deck, truth);
-  const auto twin = make_observer(other, model);
-  CHECK(twin->times() == std::vector<double>{0.02});
-  CHECK(twin->residuals().size() == 6);
-  CHECK(show(*twin, {deposit}) == Approx(0).margin(1e-20));
-  check_gradient(*twin, {moved(model, 3)});
+  for (const std::string reading : {"surface", "depth"}) {
+    const deck::Deck other =
+        scene.deck(R"({"kind": "profile", "body": "pool", "reading": ")" + reading +
+                   R"(", "time": 0.02, "file": "truth/results.h5", "mask": {"box": {"min": [0, 0], "max": [0.6, 1]}}})");
+    const auto twin = make_observer(other, model);
+    CHECK(twin->times() == std::vector<double>{0.02});
+    CHECK(twin->residuals().size() == 6);
+    CHECK(show(*twin, {deposit}) == Approx(0).margin(1e-20));
+    CHECK(show(*twin, {moved(model, 3)}) > 0);
+    check_gradient(*twin, {moved(model, 3)});
+  }
 }

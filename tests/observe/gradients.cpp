@@ -136,7 +136,8 @@ TEST_CASE("derivatives of fronts by depth") {
 TEST_CASE("derivatives of heights, beside walls too, and of a deposit's") {
   for (const double at : {0.0, 0.01, 0.2, 0.43}) {
     check_everywhere(flat, *make_gauge(deck::HeightGauge{{at}}, flat));
-    check_everywhere(flat, *make_deposit_gauge({at}, flat, 0));
+    for (const auto reading : {deck::ProfileReading::surface, deck::ProfileReading::depth})
+      check_everywhere(flat, *make_deposit_gauge({at}, flat, 0, reading));
     check_everywhere(space, *make_gauge(deck::HeightGauge{{at, 0.0}}, space));
   }
   // Gravity upwards: the material hangs from the top, and the surface is its lower end.
@@ -156,9 +157,11 @@ TEST_CASE("a deposit is one body's, and the ground where that is not") {
   };
   const std::vector<BodySnapshot> bodies{layer(0, 0.2), layer(0.2, 0.3)};
   CHECK(read(*make_gauge(deck::HeightGauge{{0.3}}, two), bodies).values[0] == Approx(0.3).margin(1e-6));
-  CHECK(read(*make_deposit_gauge({0.3}, two, 0), bodies).values[0] == Approx(0.2).margin(1e-6));
+  for (const auto reading : {deck::ProfileReading::surface, deck::ProfileReading::depth})
+    CHECK(read(*make_deposit_gauge({0.3}, two, 0, reading), bodies).values[0] == Approx(0.2).margin(1e-6));
+  CHECK(read(*make_deposit_gauge({0.3}, two, 1, deck::ProfileReading::depth), bodies).values[0] == Approx(0.1).margin(1e-6));
   for (const auto& [at, body] : {std::pair{0.3, std::size_t(1)}, {1.0, std::size_t(0)}}) {
-    const auto gauge = make_deposit_gauge({at}, two, body);
+    const auto gauge = make_deposit_gauge({at}, two, body, deck::ProfileReading::surface);
     const Sample dry = read(*gauge, bodies);
     CHECK(dry.valid);
     CHECK(dry.values == std::vector<double>{0});

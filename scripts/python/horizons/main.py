@@ -13,6 +13,7 @@ import time
 
 from page import PAGE, page
 from picture import draw
+from remedies import SEARCHES, search
 from scenes import SCENES
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
@@ -84,20 +85,25 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("scenes", nargs="*", metavar="SCENE", help=f"of {', '.join(SCENES)}; all when none is named")
     parser.add_argument("--quick", action="store_true", help="runs of up to 500 steps; nothing is kept")
+    parser.add_argument("--remedies", action="store_true", help="only the searches with several methods")
     arguments = parser.parse_args()
     unknown = [name for name in arguments.scenes if name not in SCENES]
     if unknown:
         parser.error(f"there is no scene {', '.join(unknown)}; there are {', '.join(SCENES)}")
     KEPT.mkdir(parents=True, exist_ok=True)
-    for name in arguments.scenes or SCENES:
+    for name in [] if arguments.remedies else arguments.scenes or SCENES:
         report = study(name, QUICK if arguments.quick else STEPS)
         if arguments.quick:
             continue
         (KEPT / f"{name}.json").write_text(json.dumps(report, indent=1) + "\n", encoding="utf-8")
         draw(report, KEPT / f"{name}.png")
     if not arguments.quick:
+        for name in SEARCHES if arguments.remedies or not arguments.scenes else []:
+            report = search(name, SCENES[name], program, set_value)
+            (KEPT / f"remedies_{name}.json").write_text(json.dumps(report, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
         reports = [json.loads((KEPT / f"{name}.json").read_text(encoding="utf-8")) for name in SCENES if (KEPT / f"{name}.json").is_file()]
-        PAGE.write_text(page(reports), encoding="utf-8")
+        searches = [json.loads(path.read_text(encoding="utf-8")) for path in sorted(KEPT.glob("remedies_*.json"))]
+        PAGE.write_text(page(reports, searches), encoding="utf-8")
         print(f"written: {PAGE.relative_to(ROOT)}")
 
 

@@ -1,6 +1,7 @@
 """docs/long_horizons.md, from the figures of all scenes."""
 import pathlib
 
+import remedies
 from figures import summary, useful_steps
 
 PAGE = pathlib.Path(__file__).resolve().parents[3] / "docs" / "long_horizons.md"
@@ -41,8 +42,8 @@ def overview(reports):
     return [*lines, ""]
 
 
-def page(reports):
-    lines = [HEAD, *overview(reports), ADVICE.read_text(encoding="utf-8")]
+def page(reports, searches):
+    lines = [HEAD, *overview(reports), ADVICE.read_text(encoding="utf-8"), *remedies.table(searches), ""]
     for report in reports:
         lines += section(report)
     return "\n".join(lines).rstrip() + "\n"
