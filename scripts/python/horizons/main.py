@@ -49,7 +49,7 @@ def gradient_at(scene, steps, seen, value, place):
     """Loss and gradient at one value, from what is seen at the end of the run."""
     deck = copy.deepcopy(scene.deck(steps))
     observation = {**scene.seen[seen], "file": str(place / "truth" / "results.h5")}
-    if seen != "profile":
+    if observation["kind"] != "profile":
         observation["from_time"] = 0.5 * steps * scene.step
     deck["inverse"] = {"unknowns": [{"path": scene.unknown, "start": value}], "observations": [observation], "memory": "3 GiB"}
     path = place / f"{seen}_{value:.6g}.json"

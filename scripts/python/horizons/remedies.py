@@ -32,7 +32,7 @@ def search(name, scene, program, set_value):
         truth = copy.deepcopy(deck)
         set_value(truth, scene.unknown, scene.truth)
         (place / "truth.json").write_text(json.dumps(truth), encoding="utf-8")
-        program("run", str(place / "truth.json"), "-o", str(place / "truth"), "-q")
+        program("run", str(place / "truth.json"), "-o", str(place / "truth"), "-q", "--threads", "1")
         found = {}
         for number, (method, (window, optimizer)) in enumerate(methods(settings["adam"]).items()):
             observation = {**scene.seen["paths"], "file": str(place / "truth" / "results.h5")}
@@ -40,7 +40,7 @@ def search(name, scene, program, set_value):
             unknown = {"path": scene.unknown, "start": settings["start"], "bounds": settings["bounds"]}
             case = {**deck, "inverse": {"unknowns": [unknown], "observations": [observation], "optimizer": optimizer, "memory": "3 GiB"}}
             (place / f"{number}.json").write_text(json.dumps(case), encoding="utf-8")
-            said = program("invert", str(place / f"{number}.json"), "-o", str(place / f"{number}"))
+            said = program("invert", str(place / f"{number}.json"), "-o", str(place / f"{number}"), "--threads", "1")
             result = json.loads((place / f"{number}" / "inversion.json").read_text(encoding="utf-8"))
             found[method] = {"value": result["unknowns"][scene.unknown]["value"], "loss": result["loss"], "evaluations": result["evaluations"], "first_loss": result["iterations"][0]["loss"]}
             print(f"{name}, {method}: {found[method]['value']:.4g} {re.findall('Converged|Out of iterations|No step', said)}", flush=True)

@@ -24,6 +24,7 @@ class Scene:
 PATHS = {"kind": "particles", "body": "m", "field": "position"}
 MEAN = {"kind": "gauge", "gauge": "mean"}
 PROFILE = {"kind": "profile", "body": "m"}
+DEPTH = {**PROFILE, "reading": "depth"}
 
 
 def spread(low, high, count=7):
@@ -56,6 +57,6 @@ WAVE = ["-a*sin(_pi*x/0.4)*(exp(_pi*y/0.4) + exp(-_pi*y/0.4))/2", "a*cos(_pi*x/0
 SCENES = {
     "wave": Scene("Water: a standing wave in a pool", liquid([0.4, 0.3], [0.4, 0.15], 0.0125, 2.5e-4, WAVE), 2.5e-4, "/parameters/a", spread(0.02, 0.1), 0.11, {"paths": PATHS, "mean": MEAN}),
     "splash": Scene("Water: a dam break that runs up a wall and falls back", liquid([0.6, 0.6], [0.2, 0.3], 0.0125, 1.5e-4, ["a*x/0.2", 0]), 1.5e-4, "/parameters/a", spread(0.1, 0.5), 0.55, {"paths": PATHS, "mean": MEAN}),
-    "sand": Scene("Sand: a column that collapses on a floor with friction", column_of_sand({"kind": "friction", "coefficient": 0.35}), 5e-5, "/materials/m/friction_angle", spread(25, 33), 24, {"paths": PATHS, "profile": PROFILE}),
+    "sand": Scene("Sand: a column that collapses on a floor with friction", column_of_sand({"kind": "friction", "coefficient": 0.35}), 5e-5, "/materials/m/friction_angle", spread(25, 33), 24, {"paths": PATHS, "profile": PROFILE, "depth": DEPTH}),
     "sand_rough": Scene("Sand: the same on a floor that it sticks to", column_of_sand({"kind": "no_slip"}), 5e-5, "/materials/m/friction_angle", spread(25, 33), 24, {"paths": PATHS, "profile": PROFILE}),
 }  # fmt: skip
