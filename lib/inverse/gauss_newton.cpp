@@ -31,9 +31,9 @@ std::optional<Variables> damped_step(const Linearisation& about, const Variables
   return step;
 }
 
-/// Spacings of the Jacobian's differences: at first those of the deck, then as long as the steps that they lead to. Where a flow takes one
-/// of many ways (grains, splashes) the loss is rough on a scale much below that on which the data tell the unknown, and exact derivatives
-/// lead nowhere: differences across the roughness do (implicit filtering: Kelley 2011, SIAM, chapters 4 and 6).
+/// Spacings of the Jacobian's differences: at first those of the deck, then as long as the steps that they lead to. Where a flow falls
+/// apart (splashes) or is read from few particles (surfaces) the loss is rough on a scale much below that on which the data tell the
+/// unknown, and exact derivatives lead nowhere: differences across the roughness do (implicit filtering: Kelley 2011, SIAM, chapters 4, 6).
 class Spacings {
  public:
   Spacings(const SearchSpace& space, double first) : least_(space.scale), present_(space.scale) {
