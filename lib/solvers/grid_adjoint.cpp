@@ -56,34 +56,35 @@ auto GridAdjoint<T, Dim>::undamped(const T* sum, const V& pull) const -> V {
   return v;
 }
 
-/// Adds the derivatives by the body force's numbers, of one by Δt b at a node.
+/// Adds the derivatives by the body force's numbers, of those by Δt b at a block's nodes. The force is asked for where something passes
+/// through a node alone: elsewhere, as in the forward update, it need not be finite.
 template <class T, int Dim>
-void GridAdjoint<T, Dim>::add_by_pull(std::size_t b, const Node& node, const V& by_pull, double time) {
+void GridAdjoint<T, Dim>::add_by_pull(const Blocks<Dim>& blocks, std::size_t b, const std::array<V, cells>& by_pull, double time) {
   if (!model_.body_force) return;
-  Point place{}, by{};
-  for (std::size_t d = 0; d < Dim; ++d) {
-    place[d] = model_.domain_min[d] + model_.cell_size * node[d];
-    by[d] = double(by_pull[int(d)]);
+  const Node first = first_node<Dim>(blocks.index[b]);
+  const BodyForce::Loan field(*model_.body_force);
+  for (int own = 0; own < cells; ++own) {
+    Point by{};
+    for (int c = 0; c < Dim; ++c) by[std::size_t(c)] = double(by_pull[std::size_t(own)][c]);
+    if (by != Point{}) field.add_slopes(forward_.place(node_of<Dim>(first, own)), time, by, block_[b].body_force.data());
   }
-  BodyForce::Loan(*model_.body_force).add_slopes(place, time, by, block_[b].body_force.data());
 }
 
 /// Derivatives by damping and by the body force's numbers, at the nodes of a block that no wall is near.
 template <class T, int Dim>
 void GridAdjoint<T, Dim>::constants_adjoint(const Blocks<Dim>& blocks, std::size_t b, const GridConstants<T, Dim>& constants, double time) {
-  const Node first = first_node<Dim>(blocks.index[b]);
+  std::array<V, cells> by_pull{};
   for (int own = 0; own < cells; ++own) {
     const T *sum = forward_.sums(b) + 4 * own, *bar = own_.data() + b * kernels_.own_size + 4 * own;
     if (!(sum[0] > constants.mass_cut_off)) continue;
     const V v = undamped(sum, forward_.pull(constants, b, own));
-    V by_pull;
     for (int c = 0; c < Dim; ++c) {
       const T by_v = bar[1 + c] + (kernels_.planes == 2 ? bar[cells * 4 + 1 + c] : T(0));
       block_[b].damping -= double(by_v * v[c]);
-      by_pull[c] = by_v - constants.damped * by_v;
+      by_pull[std::size_t(own)][c] = by_v - constants.damped * by_v;
     }
-    add_by_pull(b, node_of<Dim>(first, own), by_pull, time);
   }
+  add_by_pull(blocks, b, by_pull, time);
 }
 
 /// Adjoint of the obstacles at one node, which act one after another: `start` is the velocity before the first, `bar` is by the velocity
@@ -230,7 +231,7 @@ void GridAdjoint<T, Dim>::collect_wall_block(const Blocks<Dim>& blocks, std::siz
       }
     }
   }
-  for (int own = 0; own < cells; ++own) add_by_pull(b, node_of<Dim>(first, own), by_pull[std::size_t(own)], time);
+  add_by_pull(blocks, b, by_pull, time);
 }
 
 template class GridAdjoint<double, 2>;

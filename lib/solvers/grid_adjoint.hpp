@@ -52,7 +52,7 @@ class GridAdjoint {
   };
 
   V undamped(const T* sum, const V& pull) const;
-  void add_by_pull(std::size_t b, const Node& node, const V& by_pull, double time);
+  void add_by_pull(const Blocks<Dim>& blocks, std::size_t b, const std::array<V, cells>& by_pull, double time);
   void constants_adjoint(const Blocks<Dim>& blocks, std::size_t b, const GridConstants<T, Dim>& constants, double time);
   void obstacles_adjoint(const Blocks<Dim>& blocks, std::size_t b, const GridConstants<T, Dim>& constants);
   Sum take_out(const T* sums, T cut_off, int own, T* bars, V& bar) const;

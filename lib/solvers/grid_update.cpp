@@ -125,10 +125,7 @@ void GridUpdate<T, Dim>::apply_body_force(const Blocks<Dim>& blocks, std::size_t
   const BodyForce::Loan field(*model_.body_force);
   for (int n = 0; n < cells; ++n) {
     const bool some = own[4 * n] > constants.mass_cut_off;
-    const Node node = node_of<Dim>(first, n);
-    Point place{};
-    for (std::size_t d = 0; d < Dim; ++d) place[d] = model_.domain_min[d] + model_.cell_size * node[d];
-    const Point b_i = some ? field.at(place, time) : Point{};
+    const Point b_i = some ? field.at(place(node_of<Dim>(first, n)), time) : Point{};
     for (int c = 0; c < Dim; ++c) {
       const T step = T(dt * b_i[std::size_t(c)]), kept = step - constants.damped * step;
       force[n * Dim + c] = step;

@@ -51,6 +51,12 @@ class GridUpdate {
   Vector<T, Dim> pull(const GridConstants<T, Dim>& constants, std::size_t b, int own) const {
     return pull_at<T, Dim>(constants, force(), int(b), own);
   }
+  /// Where a node lies, m, in the deck's coordinates.
+  Point place(const Index<Dim>& node) const {
+    Point x{};
+    for (std::size_t d = 0; d < Dim; ++d) x[d] = model_.domain_min[d] + model_.cell_size * node[d];
+    return x;
+  }
   const ContactBlocks<T, Dim>& contact_blocks() const { return contact_blocks_; }
   const Walls<T, Dim>& walls() const { return walls_; }
   /// Totals of the last update, added up in the order of blocks; nothing rubs where all is at rest.

@@ -209,6 +209,22 @@ TEST_CASE("gradients by damping and by the numbers of a body force agree with ce
   check_number(&Numbers::k, 1e-4, g.body_force[4]);
 }
 
+TEST_CASE("gradients by a body force that is not finite where no material is") {
+  Model model = scene(2, deck::Transfer::apic, water(2), elastic(), deck::ContactKind::friction);
+  double right = 0;  // of all material, cells
+  for (const Body& body : model.bodies)
+    for (const Point& X : body.initial.position) right = std::max(right, X[0]);
+  const double end = model.domain_min[0] + model.cell_size * (right + 3);  // beyond all nodes with mass
+  model.body_force = std::make_shared<const BodyForce>(std::vector<deck::Formula>{"a*sqrt(" + std::to_string(end) + " - x)", 0.0}, 2,
+                                                       std::map<std::string, double>{{"a", 5}});
+  Everything observer({1e-3});
+  const StepSequence steps = record_run(model, observer, {});
+  const ModelGradient g = gradient_of(model, steps, observer, 4);
+  REQUIRE(g.body_force.size() == 4);
+  CHECK(std::isfinite(g.body_force[3]));
+  CHECK(g.body_force[3] != 0);
+}
+
 TEST_CASE("gradients of a run that sorts its particles on the way agree with central differences") {
   Model model = scene(2, deck::Transfer::tpic, elastic(), elastic(), deck::ContactKind::slip);
   model.obstacles.resize(0);
