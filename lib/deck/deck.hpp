@@ -18,9 +18,6 @@ struct Domain {
   Numbers min, max;
   double cell_size = 0;
 };
-/// Default /time/cfl with linear splines, which are unstable from 0.3 on in some scenes (docs/stability.md, "Time step against the speed of
-/// waves"); the smoother ones are stable up to 0.78 and more.
-constexpr double linear_cfl = 0.25;
 struct Time {
   double end = 0;
   std::optional<double> step; /* empty: "auto" */

@@ -174,8 +174,7 @@ void describe(Description<GaussNewton>& d) {
       .to(0.25)
       .help(
           "Of the differences at first, in parts of the width of the bounds (of the start's size without them). It follows the steps as "
-          "they "
-          "become shorter, down to 1e-4. A loss may be rough on closer scales.");
+          "they become shorter, down to 1e-4. A loss may be rough on closer scales.");
   describe_stopping(d);
 }
 

@@ -37,7 +37,7 @@ std::optional<Variables> damped_step(const Linearisation& about, const Variables
 class Spacings {
  public:
   Spacings(const SearchSpace& space, double first) : least_(space.scale), present_(space.scale) {
-    for (double& h : least_) h *= std::min(first, least_jacobian_spacing);
+    for (double& h : least_) h *= least_jacobian_spacing;
     for (double& h : present_) h *= first;
   }
   const Variables& present() const { return present_; }

@@ -1,7 +1,6 @@
 """Runs the scenes, keeps their figures, and writes docs/long_horizons.md."""
 import argparse
 import concurrent.futures
-import copy
 import datetime
 import json
 import os
@@ -23,13 +22,6 @@ STEPS = (100, 500, 2000, 5000, 10000, 20000)
 QUICK = (100, 500)
 
 
-def set_value(scene, pointer, value):
-    *path, last = pointer.strip("/").split("/")
-    for key in path:
-        scene = scene[key]
-    scene[last] = value
-
-
 def program(*arguments):
     done = subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, check=False)
     if done.returncode:
@@ -39,15 +31,13 @@ def program(*arguments):
 
 def truth_of(scene, steps, place):
     """Runs the scene with the true value."""
-    deck = scene.deck(steps)
-    set_value(deck, scene.unknown, scene.truth)
-    (place / "truth.json").write_text(json.dumps(deck), encoding="utf-8")
-    program("run", str(place / "truth.json"), "-o", str(place / "truth"), "-q", "--threads", "1")
+    (place / "truth.json").write_text(json.dumps(scene.deck(steps)), encoding="utf-8")
+    program("run", str(place / "truth.json"), "--set", f"{scene.unknown}={scene.truth}", "-o", str(place / "truth"), "-q", "--threads", "1")
 
 
 def gradient_at(scene, steps, seen, value, place):
     """Loss and gradient at one value, from what is seen at the end of the run."""
-    deck = copy.deepcopy(scene.deck(steps))
+    deck = scene.deck(steps)
     observation = {**scene.seen[seen], "file": str(place / "truth" / "results.h5")}
     if observation["kind"] != "profile":
         observation["from_time"] = 0.5 * steps * scene.step
@@ -99,7 +89,7 @@ def main():
         draw(report, KEPT / f"{name}.png")
     if not arguments.quick:
         for name in SEARCHES if arguments.remedies or not arguments.scenes else []:
-            report = search(name, SCENES[name], program, set_value)
+            report = search(name, SCENES[name], program)
             (KEPT / f"remedies_{name}.json").write_text(json.dumps(report, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
         reports = [json.loads((KEPT / f"{name}.json").read_text(encoding="utf-8")) for name in SCENES if (KEPT / f"{name}.json").is_file()]
         searches = [json.loads(path.read_text(encoding="utf-8")) for path in sorted(KEPT.glob("remedies_*.json"))]

@@ -1,5 +1,4 @@
 """What helps where exact gradients over the whole run do not: searches by several methods for the value of one scene."""
-import copy
 import json
 import pathlib
 import re
@@ -22,17 +21,15 @@ def methods(adam):
     }
 
 
-def search(name, scene, program, set_value):
+def search(name, scene, program):
     """By method: the value found, the loss, and how many runs and gradients it took."""
     settings = SEARCHES[name]
     with tempfile.TemporaryDirectory(prefix="jaxmpm-remedies-") as scratch:
         place = pathlib.Path(scratch)
         deck = scene.deck(STEPS)
         deck["output"]["interval"] = 500 * scene.step
-        truth = copy.deepcopy(deck)
-        set_value(truth, scene.unknown, scene.truth)
-        (place / "truth.json").write_text(json.dumps(truth), encoding="utf-8")
-        program("run", str(place / "truth.json"), "-o", str(place / "truth"), "-q", "--threads", "1")
+        (place / "truth.json").write_text(json.dumps(deck), encoding="utf-8")
+        program("run", str(place / "truth.json"), "--set", f"{scene.unknown}={scene.truth}", "-o", str(place / "truth"), "-q", "--threads", "1")
         found = {}
         for number, (method, (window, optimizer)) in enumerate(methods(settings["adam"]).items()):
             observation = {**scene.seen["paths"], "file": str(place / "truth" / "results.h5")}
