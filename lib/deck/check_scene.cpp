@@ -163,11 +163,6 @@ void check_body_force(const Deck& deck, const Place& root) {
   if (deck.parameters.count("t") > 0) root.reader.problem("/parameters/t", "is the time in /body_force; choose another name");
 }
 
-void check_volume_averaging(const Deck& deck, const Place& root) {
-  if (deck.method.volume_averaging > 0 && root.reader.dimension() == 3)
-    root.reader.problem("/method/volume_averaging", "changes of volume are averaged in 2D only; remove it");
-}
-
 }  // namespace
 
 void check_scene(const Deck& deck, const Place& root) {
@@ -178,7 +173,6 @@ void check_scene(const Deck& deck, const Place& root) {
   check_parameters(deck, root);
   check_walls(deck, root);
   check_body_force(deck, root);
-  check_volume_averaging(deck, root);
 }
 
 }  // namespace jaxmpm::deck

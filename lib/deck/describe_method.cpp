@@ -120,7 +120,7 @@ void describe(Description<Method>& d) {
       .to(1)
       .help(
           "Part of each step's change of volume that is averaged over the nodes around, against noisy pressure and against locking of "
-          "nearly incompressible solids (docs/theory.md; measured in validation/pressure); 0 is none. In 2D, with --backend cpu.");
+          "nearly incompressible solids (docs/theory.md; measured in validation/pressure); 0 is none. Only with --backend cpu.");
   d.optional("rest", &Method::rest)
       .otherwise("none: every particle moves at every step")
       .help("Only with --backend cpu, and not in gradients.");

@@ -32,8 +32,9 @@ JAXMPM_INLINE Pack<T, N> sum_quads(const Pack<T, N>* x) {
 template <class Sch>
 struct GatheredQuads {
   static constexpr int value = 0, moments = 1, slopes = Sch::g2p_moments ? 1 + Sch::Dim : 1;
-  static constexpr int change = 1 + Sch::Dim * (int(Sch::g2p_moments) + int(Sch::g2p_slopes));  // FLIP's Σ φ Δv
-  static constexpr int count = change + (Sch::flip ? 1 : 0);
+  static constexpr int change = 1 + Sch::Dim * (int(Sch::g2p_moments) + int(Sch::g2p_slopes));  // the second plane: FLIP's Σ φ Δv
+  static constexpr int count = change + Sch::planes - 1;
+  static constexpr int dilation = 4 * (Sch::dilation_plane == 0 ? value : change) + Sch::dilation_lane;  // where the mean of θ is
   static constexpr int per_store = RowShape<typename Sch::T, Sch::S>::N / 4;
   static constexpr int padded = (count + per_store - 1) / per_store * per_store;
 };
@@ -101,7 +102,7 @@ JAXMPM_INLINE void gather_batch(const Stencil& t, int count, const typename Sch:
     R sums[G::padded];
     for (int i = G::count; i < G::padded; ++i) sums[i] = R(T(0));
     gather<Sch, Sch::g2p_moments, Sch::g2p_slopes>(rows[0], t, l, sums);
-    if constexpr (Sch::flip) gather<Sch, false, false>(rows[Sch::planes - 1], t, l, sums + G::change);
+    if constexpr (Sch::planes == 2) gather<Sch, false, false>(rows[1], t, l, sums + G::change);
     for (int i = 0; i < G::padded; i += G::per_store) sum_quads<T, R::lanes>(sums + i).store(gathered.row(l) + 4 * i);
   }
   for (int l = count; l < batch<T>; ++l) std::memcpy(gathered.row(l), gathered.row(count - 1), sizeof(T) * std::size_t(4 * G::padded));
@@ -115,13 +116,17 @@ struct DomainBounds {
 
 /// tr H += part (θ̄ − θ): takes part of the last step's change of volume θ back and puts the mean of the nodes around in its place. Returns
 /// tr H as it was.
-template <class T>
-JAXMPM_INLINE Pack<T, batch<T>> average_volume(const Particles<T, 2>& p, std::size_t s, int count, Pack<T, batch<T>> mean, T part,
+template <class T, int Dim>
+JAXMPM_INLINE Pack<T, batch<T>> average_volume(const Particles<T, Dim>& p, std::size_t s, int count, Pack<T, batch<T>> mean, T part,
                                                T H[][batch<T>]) {
   using P = Pack<T, batch<T>>;
-  const P xx = P::load(H[0]), yy = P::load(H[3]), half = P(T(0.5) * part) * (mean - load(p.dilation[0].data() + s, count));
-  (xx + half).store(H[0]), (yy + half).store(H[3]);
-  return xx + yy;
+  const P share = P(part / T(Dim)) * (mean - load(p.dilation[0].data() + s, count));
+  P trace(T(0));
+  for (int c = 0; c < Dim; ++c) {
+    const P along = P::load(H[c * (Dim + 1)]);
+    trace += along, (along + share).store(H[c * (Dim + 1)]);
+  }
+  return trace;
 }
 
 /// Moves W particles and advances their material.
@@ -175,11 +180,9 @@ JAXMPM_INLINE void update_particles(Particles<typename Sch::T, Sch::Dim>& p, std
       (P(step.dt) * gradient).store(H[c * Dim + k]);
       if (!p.gradient.empty()) store(p.gradient[std::size_t(c * Dim + k)].data() + s, gradient, count);
     }
-  if constexpr (Dim == 2)
-    if (!p.dilation.empty()) {
-      const P mean = gathered[4 * G::value + dilation_lane];
-      store(p.dilation[0].data() + s, average_volume(p, s, count, mean, step.volume_averaging, H), count);
-    }
+  if constexpr (Sch::dilation)
+    if (!p.dilation.empty())
+      store(p.dilation[0].data() + s, average_volume(p, s, count, gathered[G::dilation], step.volume_averaging, H), count);
   sqrt(speed2).store(speed);
   material.update(p, s, count, H, speed, step.dt, account, report);
   report.displacement = std::max(report.displacement, double(largest(moved)));

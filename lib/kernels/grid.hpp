@@ -97,17 +97,17 @@ GridConstants<T, Dim> grid_constants(const Model& model, T mass_cut_off, double 
   return constants;
 }
 
-/// One node where no wall is near: P = (p + Δt f + Δt m g)/(1 + ζΔt), v = P / m. Sums become velocities in place ({m, v}, and FLIP's
-/// {–, v − p/m} in `change`).
+/// One node where no wall is near: P = (p + Δt f + Δt m g)/(1 + ζΔt), v = P / m. Sums become velocities in place ({m, v}, and
+/// {–, v − p/m} in the second quad `change` where there is one), Σ m θ the mean of θ.
 template <class Sch>
 JAXMPM_INLINE void update_node(typename Sch::T* v, typename Sch::T* change, const GridConstants<typename Sch::T, Sch::Dim>& grid) {
   using T = typename Sch::T;
   const bool some = v[0] > grid.mass_cut_off;
   const T inverse = some ? T(1) / v[0] : T(0);
-  if constexpr (Sch::Dim == 2) v[dilation_lane] *= inverse;
+  if constexpr (Sch::dilation) (Sch::dilation_plane == 0 ? v : change)[Sch::dilation_lane] *= inverse;
   for (int c = 0; c < Sch::Dim; ++c) {
     const T pull = some ? grid.gravity_step[c] : T(0);
-    if constexpr (Sch::flip) {
+    if constexpr (Sch::planes == 2) {
       change[1 + c] = change[1 + c] * inverse + pull;
       v[1 + c] = v[1 + c] * inverse + change[1 + c];
       change[1 + c] -= grid.damped * v[1 + c];

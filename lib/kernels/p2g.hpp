@@ -88,8 +88,8 @@ JAXMPM_INLINE void scatter(StencilRows<Sch>& rows, const Stencil& t, int l, cons
   });
 }
 
-/// Coefficient quads of W particles: {m, m v} at rest (2D: and m θ, where θ is kept), per axis m C Δx for the affine velocity, and −Δt V σ
-/// times 1/Δx (slopes) or Δx D⁻¹ (moments) for the force.
+/// Coefficient quads of W particles: {m, m v} at rest, per axis m C Δx for the affine velocity, and −Δt V σ times 1/Δx (slopes) or Δx D⁻¹
+/// (moments) for the force; where θ is kept, m θ in the first quad (2D) or in one of its own (3D).
 template <class Sch>
 struct Coefficients {
   using T = typename Sch::T;
@@ -98,8 +98,17 @@ struct Coefficients {
   static constexpr bool affine_and_force = Sch::affine && Sch::mls;  // both ride on d: one set of quads
   static constexpr int affine = 1;
   static constexpr int force = Sch::affine && !Sch::mls ? 1 + Dim : 1;
-  static constexpr int quads = force + Dim;
+  static constexpr int dilation = !Sch::dilation ? -1 : (Dim == 2 ? 0 : force + Dim);
+  static constexpr int quads = force + Dim + int(dilation > 0);
   ParticleRows<T, 4 * quads> rows;
+
+  /// FLIP keeps the momentum and the impulse of the forces apart.
+  static constexpr PlaneQuads in_plane(int plane) {
+    constexpr int moments = Sch::mls ? force : (Sch::affine ? affine : -1), slopes = Sch::mls ? -1 : force;
+    constexpr int second = Dim == 3 ? dilation : -1;
+    if (Sch::flip) return plane == 0 ? PlaneQuads{0, -1, -1} : PlaneQuads{second, moments, slopes};
+    return plane == 0 ? PlaneQuads{0, moments, slopes} : PlaneQuads{second, -1, -1};
+  }
 
   JAXMPM_INLINE Coefficients(const Particles<T, Dim>& p, std::size_t s, int count, const MaterialKernel<T, Dim>& material,
                              const StepConstants<T>& step) {
@@ -108,8 +117,8 @@ struct Coefficients {
     const P m = load(p.mass.data() + s, count);
     q[0] = m;
     for (int c = 0; c < Dim; ++c) q[1 + c] = m * load(p.velocity[std::size_t(c)].data() + s, count);
-    if constexpr (Dim == 2)
-      if (!p.dilation.empty()) q[dilation_lane] = m * load(p.dilation[0].data() + s, count);
+    if constexpr (Sch::dilation)
+      if (!p.dilation.empty()) q[4 * dilation + Sch::dilation_lane] = m * load(p.dilation[0].data() + s, count);
     if constexpr (Sch::affine) {
       const P scale = m * P(step.cell_size);
       for (int c = 0; c < Dim; ++c)
@@ -151,13 +160,10 @@ void p2g_tile(const Particles<typename Sch::T, Sch::Dim>& p, std::size_t begin, 
         for (auto& r : rows) r.clear();
         current = t.base[l];
       }
-      constexpr int moments = Sch::mls ? Q::force : (Sch::affine ? Q::affine : -1), slopes = Sch::mls ? -1 : Q::force;
-      if constexpr (Sch::flip) {
-        scatter<Sch, 0, -1, -1>(rows[0], t, l, q.rows.row(l));
-        scatter<Sch, -1, moments, slopes>(rows[1], t, l, q.rows.row(l));
-      } else {
-        scatter<Sch, 0, moments, slopes>(rows[0], t, l, q.rows.row(l));
-      }
+      static_for<Sch::planes>([&](auto plane) {
+        constexpr PlaneQuads of = Q::in_plane(plane);
+        scatter<Sch, of.rest, of.moments, of.slopes>(rows[plane], t, l, q.rows.row(l));
+      });
     }
   }
   if (current >= 0) flush();

@@ -6,21 +6,18 @@
 
 namespace jaxmpm {
 
-/// In 2D the last value of a node's first quad has room for Σ m θ, then the mean of θ: the particles' change of volume in the last step,
-/// where it is averaged (/method/volume_averaging).
-inline constexpr int dilation_lane = 3;
-
-/// S: spline nodes; MLS: gradient form D⁻¹φ(x_i − x_p) instead of ∇φ.
+/// S: spline nodes; MLS: gradient form D⁻¹φ(x_i − x_p) instead of ∇φ; Dilation: a node has room for Σ m θ, then the mean of θ, the
+/// particles' change of volume in the last step, where it is averaged (/method/volume_averaging). In 2D that costs nothing.
 ///
 /// Along one axis a particle has three kinds of factor for a node: the weight w, the moment d = w (X_i − X_p) and the slope g = dφ/dX. A
 /// tensor-product quantity along axis k takes d or g on axis k and w on the others. Affine velocities go with d, forces and gradients with
 /// g (spline) or d (mls).
-template <class T_, int Dim_, int S_, deck::Transfer kTransfer, bool kMls>
+template <class T_, int Dim_, int S_, deck::Transfer kTransfer, bool kMls, bool kDilation = Dim_ == 2>
 struct Scheme {
   using T = T_;
   static constexpr int Dim = Dim_, S = S_;
   static constexpr deck::Transfer transfer = kTransfer;
-  static constexpr bool mls = kMls;
+  static constexpr bool mls = kMls, dilation = kDilation;
   static_assert(!(mls && S == 2), "linear splines have no moment matrix");
   static constexpr bool flip = transfer == deck::Transfer::flip;
   /// APIC's affine matrix is B D⁻¹; with linear splines D is singular at nodes and ∇φ takes its place, which is TPIC.
@@ -29,8 +26,10 @@ struct Scheme {
   static constexpr bool p2g_moments = affine || mls, p2g_slopes = !mls;
   static constexpr bool g2p_moments = affine_by_moments || mls;
   static constexpr bool g2p_slopes = !mls || (affine && !affine_by_moments);
-  /// A node's record: one quad {mass, momentum or velocity}; FLIP has a second {–, impulse or change of velocity}. In 2D see dilation_lane.
-  static constexpr int planes = flip ? 2 : 1;
+  /// A node's record: one quad {mass, momentum or velocity}; FLIP has a second {–, impulse or change of velocity}. θ has the last place of
+  /// the first quad in 2D and the first place of the second in 3D.
+  static constexpr int planes = flip || (dilation && Dim == 3) ? 2 : 1;
+  static constexpr int dilation_plane = Dim == 2 ? 0 : 1, dilation_lane = Dim == 2 ? 3 : 0;
   using Shape = BlockShape<Dim, S>;
   static constexpr int arena_plane = (Shape::arena_nodes + 4) * 4;  // rows are read a full vector at a time: room behind the last
   static constexpr int arena_size = arena_plane * planes;

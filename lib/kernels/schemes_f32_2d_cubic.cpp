@@ -1,5 +1,5 @@
 #include "kernels/step_kernels_impl.hpp"
 
 namespace jaxmpm {
-template StepKernels<float, 2> step_kernels<float, 2, 4>(deck::Transfer, deck::GradientForm);
+template StepKernels<float, 2> step_kernels<float, 2, 4>(const deck::Method&);
 }

@@ -1,5 +1,5 @@
 #include "kernels/step_kernels_impl.hpp"
 
 namespace jaxmpm {
-template StepKernels<double, 3> step_kernels<double, 3, 2>(deck::Transfer, deck::GradientForm);
+template StepKernels<double, 3> step_kernels<double, 3, 2>(const deck::Method&);
 }

@@ -31,6 +31,6 @@ struct StepKernels {
 
 /// The kernels of a method. Defined per precision, dimension and spline in kernels/schemes_*.cpp.
 template <class T, int Dim, int S>
-StepKernels<T, Dim> step_kernels(deck::Transfer transfer, deck::GradientForm gradient);
+StepKernels<T, Dim> step_kernels(const deck::Method& method);
 
 }  // namespace jaxmpm

@@ -32,33 +32,40 @@ StepKernels<typename Sch::T, Sch::Dim> kernels_of() {
 }
 
 /// Calls f(Scheme<…>{}) with the scheme of a method: the one place where run-time choices become compile-time facts.
-template <class T, int Dim, int S, bool mls, class F>
+template <class T, int Dim, int S, bool mls, bool dilation, class F>
 auto with_scheme(deck::Transfer transfer, F&& f) {
   using deck::Transfer;
   switch (transfer) {
     case Transfer::pic:
-      return f(Scheme<T, Dim, S, Transfer::pic, mls>{});
+      return f(Scheme<T, Dim, S, Transfer::pic, mls, dilation>{});
     case Transfer::flip:
-      return f(Scheme<T, Dim, S, Transfer::flip, mls>{});
+      return f(Scheme<T, Dim, S, Transfer::flip, mls, dilation>{});
     case Transfer::apic:  // with linear splines APIC is TPIC
-      if constexpr (S > 2) return f(Scheme<T, Dim, S, Transfer::apic, mls>{});
+      if constexpr (S > 2) return f(Scheme<T, Dim, S, Transfer::apic, mls, dilation>{});
       [[fallthrough]];
     case Transfer::tpic:
       break;
   }
-  return f(Scheme<T, Dim, S, Transfer::tpic, mls>{});
+  return f(Scheme<T, Dim, S, Transfer::tpic, mls, dilation>{});
+}
+
+template <class T, int Dim, int S, bool dilation, class F>
+auto with_scheme(const deck::Method& method, F&& f) {
+  if constexpr (S > 2)
+    if (method.gradient == deck::GradientForm::mls) return with_scheme<T, Dim, S, true, dilation>(method.transfer, f);
+  return with_scheme<T, Dim, S, false, dilation>(method.transfer, f);
 }
 
 template <class T, int Dim, int S, class F>
-auto with_scheme(deck::Transfer transfer, deck::GradientForm gradient, F&& f) {
-  if constexpr (S > 2)
-    if (gradient == deck::GradientForm::mls) return with_scheme<T, Dim, S, true>(transfer, f);
-  return with_scheme<T, Dim, S, false>(transfer, f);
+auto with_scheme(const deck::Method& method, F&& f) {
+  if constexpr (Dim == 3)
+    if (!(method.volume_averaging > 0)) return with_scheme<T, Dim, S, false>(method, f);
+  return with_scheme<T, Dim, S, true>(method, f);
 }
 
 template <class T, int Dim, int S>
-StepKernels<T, Dim> step_kernels(deck::Transfer transfer, deck::GradientForm gradient) {
-  return with_scheme<T, Dim, S>(transfer, gradient, [](auto scheme) { return kernels_of<decltype(scheme)>(); });
+StepKernels<T, Dim> step_kernels(const deck::Method& method) {
+  return with_scheme<T, Dim, S>(method, [](auto scheme) { return kernels_of<decltype(scheme)>(); });
 }
 
 }  // namespace jaxmpm

@@ -98,7 +98,8 @@ JAXMPM_FUNCTION NodeStanding standing(const Walls<T, Dim>& walls, const Index<Di
   return at;
 }
 
-/// Writes {m, v} (and FLIP's {–, Δv}) of own node `own` of a block at walls to `out`, the block's own nodes. `quad`: its raw sums.
+/// Writes {m, v} (and the second plane's {–, Δv}) of own node `own` of a block at walls to `out`, the block's own nodes. `quad`: its raw
+/// sums.
 template <class T, int Dim>
 JAXMPM_FUNCTION void write_wall_node(const T* quad, const Vector<T, Dim>& v, T mass_cut_off, int planes, int own, T* out) {
   constexpr int plane = BlockShape<Dim, 2>::cells * 4;

@@ -38,8 +38,7 @@ void ExplicitStep<T, Dim>::step(double dt) {
 template <class T, int Dim>
 ExplicitStep<T, Dim>::ExplicitStep(const Model& model)
     : model_(model),
-      kernels_(with_spline(model.method.basis,
-                           [&](auto nodes) { return step_kernels<T, Dim, nodes>(model.method.transfer, model.method.gradient); })),
+      kernels_(with_spline(model.method.basis, [&](auto nodes) { return step_kernels<T, Dim, nodes>(model.method); })),
       bodies_(model.bodies.size()),
       extent_(kernels_.block_extent(model.cells)),
       grid_(model_, kernels_),

@@ -60,8 +60,7 @@ void ReversibleStep<T, Dim>::step_adjoint(double dt, const KeptState& state, con
 template <class T, int Dim>
 ReversibleStep<T, Dim>::ReversibleStep(const Model& model)
     : ExplicitStep<T, Dim>(model),
-      adjoint_(with_spline(model.method.basis,
-                           [&](auto nodes) { return adjoint_kernels<T, Dim, nodes>(model.method.transfer, model.method.gradient); })),
+      adjoint_(with_spline(model.method.basis, [&](auto nodes) { return adjoint_kernels<T, Dim, nodes>(model.method); })),
       grid_adjoint_(this->model_, this->kernels_, adjoint_, this->grid_) {
   for (const Particles<T, Dim>& p : this->bodies_) {
     Array<T>& mass = mass_.emplace_back(p.count());

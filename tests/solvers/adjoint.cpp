@@ -145,9 +145,12 @@ TEST_CASE("the adjoint of a step is the transpose of its derivative: averaged ch
   using deck::ContactKind;
   const std::vector<deck::Material> materials{water(), water(2.0), sand(), elastic(), rubber()};
   std::size_t m = 0;
-  for_each_scheme([&](deck::Method method) {
-    method.volume_averaging = 0.7;
-    check_transpose(busy_scene(2, method, materials[m % 5], materials[(m + 2) % 5], m % 2 ? ContactKind::friction : ContactKind::slip));
-    ++m;
-  });
+  for (const int dim : {2, 3})
+    for_each_scheme([&](deck::Method method) {
+      method.volume_averaging = 0.7;
+      const ContactKind wall = m % 2 ? ContactKind::friction : ContactKind::slip;
+      INFO(dim << "D, wall " << int(wall));
+      check_transpose(driven(busy_scene(dim, method, materials[m % 5], materials[(m + 2) % 5], wall)));
+      ++m;
+    });
 }

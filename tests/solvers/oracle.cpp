@@ -171,6 +171,7 @@ TEST_CASE("forces on a wall are the momentum that it gives") {
 }
 
 TEST_CASE("the fast step averages changes of volume as the reference step does") {
+  const int dim = GENERATE(2, 3);
   deck::Method method;
   method.volume_averaging = GENERATE(0.4, 1.0);
   method.precision = GENERATE(deck::Precision::f64, deck::Precision::f32);
@@ -178,9 +179,9 @@ TEST_CASE("the fast step averages changes of volume as the reference step does")
   method.basis = GENERATE(deck::Basis::linear, deck::Basis::quadratic, deck::Basis::cubic);
   method.gradient = GENERATE(deck::GradientForm::spline, deck::GradientForm::mls);
   if (method.basis == deck::Basis::linear && method.gradient == deck::GradientForm::mls) return;
-  CAPTURE(method.volume_averaging, int(method.precision), int(method.transfer), int(method.basis), int(method.gradient));
-  check_step(busy_scene(2, method, water(2.0), sand(), deck::ContactKind::friction), 1e-4);
-  check_step(busy_scene(2, method, elastic(), rubber(), deck::ContactKind::no_slip), 1e-4);
+  CAPTURE(dim, method.volume_averaging, int(method.precision), int(method.transfer), int(method.basis), int(method.gradient));
+  check_step(busy_scene(dim, method, water(2.0), sand(), deck::ContactKind::friction), 1e-4);
+  check_step(driven(busy_scene(dim, method, elastic(), rubber(), deck::ContactKind::no_slip)), 1e-4);
 }
 
 TEST_CASE("a slope that meets a face of the domain does not push material out of it") {

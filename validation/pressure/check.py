@@ -1,4 +1,4 @@
-"""Noise of the pressure and locking, with and without method/volume_averaging: a dam break, water at rest, and a cantilever at three Poisson's ratios."""
+"""Noise of the pressure and locking, with and without method/volume_averaging: dam breaks in 2D and 3D, water at rest, and a cantilever at three Poisson's ratios."""
 import pathlib
 import sys
 
@@ -43,6 +43,20 @@ def dam_break(check, axes):
         check.note(f"{transfer}: seconds {', '.join(f'{seconds[part] / seconds[0]:.2f}' for part in PARTS)} of those without, for {', '.join(str(part) for part in PARTS)}")
 
 
+def dam_break_3d(check):
+    for transfer in ("apic", "flip"):
+        noise, seconds = {}, {}
+        for part in (0, 0.9):
+            results = check.run("dam_break_3d.json", f"dam_3d_{transfer}_{part}", {
+                "/method/volume_averaging": part, "/method/transfer": transfer, "/domain/cell_size": 0.02 if check.quick else 0.01, "/time/end": 0.2,
+                "/output/interval": 0.05, "/gauges": "{}"})
+            height = np.ptp(results.frames[0].field("position")[:, 2])
+            noise[part] = roughness(results.frames[1:], results.deck, 1000 * 9.81 * height)
+            seconds[part] = results.run()["seconds"]
+        check.figure("noise", noise[0.9] / noise[0], f"3D, {transfer}, 0.9", f"{noise[0.9]:.3f} ρgH", f"{noise[0]:.3f} ρgH")
+        check.note(f"3D, {transfer}: {seconds[0.9] / seconds[0]:.2f} of the seconds without")
+
+
 def at_rest(check):
     for part in (0, 0.9, 1):
         results = check.run("hydrostatic.json", f"rest_{part}", {"/method/volume_averaging": part})
@@ -79,6 +93,7 @@ def main():
     check = Check(__doc__, __file__)
     figure, axes = plt.subplots(1, 3, figsize=(13, 3.4), layout="constrained")
     dam_break(check, axes)
+    dam_break_3d(check)
     at_rest(check)
     cantilever(check, axes[2])
     check.save(figure)

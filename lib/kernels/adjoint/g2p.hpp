@@ -62,16 +62,18 @@ JAXMPM_INLINE void update_particles_adjoint(const Particles<typename Sch::T, Sch
   for (int c = 0; c < Dim; ++c)
     for (int k = 0; k < Dim; ++k) (rate * component(from + k, c)).store(H[c * Dim + k]);
   P by_next(T(0));  // by tr H, through the next step
-  if constexpr (Dim == 2)
+  if constexpr (Sch::dilation)
     if (!p.dilation.empty()) {
       by_next = load(bar.dilation[0].data() + s, count);
-      average_volume(p, s, count, gathered[4 * G::value + dilation_lane], step.volume_averaging, H);
+      average_volume(p, s, count, gathered[G::dilation], step.volume_averaging, H);
     }
   material.update(p, s, count, H, step.dt, bar, by_H, report.material);
-  if constexpr (Dim == 2)
+  if constexpr (Sch::dilation)
     if (!p.dilation.empty()) {
-      const P by_mean = P(T(0.5) * step.volume_averaging) * (P::load(by_H[0]) + P::load(by_H[3]));
-      quads[4 * G::value + dilation_lane] = by_mean;
+      P by_trace(T(0));
+      for (int c = 0; c < Dim; ++c) by_trace += P::load(by_H[c * (Dim + 1)]);
+      const P by_mean = P(step.volume_averaging / T(Dim)) * by_trace;
+      quads[G::dilation] = by_mean;
       store(bar.dilation[0].data() + s, -by_mean, count);
     }
   for (int c = 0; c < Dim; ++c)
@@ -123,7 +125,7 @@ void g2p_adjoint_tile(const Particles<typename Sch::T, Sch::Dim>& p, std::size_t
       for (R& x : place) x = R(T(0));
       scatter<Sch, G::value, moments, slopes>(by_rows[0], t, l, gathered.row(l));
       contract<Sch, G::value, moments, slopes>(rows[0], t, l, gathered.row(l), place);
-      if constexpr (Sch::flip) {
+      if constexpr (Sch::planes == 2) {
         scatter<Sch, G::change, -1, -1>(by_rows[1], t, l, gathered.row(l));
         contract<Sch, G::change, -1, -1>(rows[1], t, l, gathered.row(l), place);
       }

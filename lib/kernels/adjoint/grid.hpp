@@ -4,8 +4,8 @@
 
 namespace jaxmpm {
 
-/// Adjoint of update_node: `bar` and `by_change` hold derivatives by {–, v} (and FLIP's {–, Δv}) and receive those by the sums {m, p} (and
-/// {–, impulse}); `sums` and `impulse` are what the forward update found there. Returns the derivatives by Δt g.
+/// Adjoint of update_node: `bar` and `by_change` hold derivatives by {–, v} (and {–, Δv} of a second quad) and receive those by the sums
+/// {m, p} (and {–, impulse}); `sums` and `impulse` are what the forward update found there. Returns the derivatives by Δt g.
 template <class Sch>
 JAXMPM_INLINE Vector<typename Sch::T, Sch::Dim> update_node_adjoint(const typename Sch::T* sums, const typename Sch::T* impulse,
                                                                     const GridConstants<typename Sch::T, Sch::Dim>& grid,
@@ -20,19 +20,21 @@ JAXMPM_INLINE Vector<typename Sch::T, Sch::Dim> update_node_adjoint(const typena
   T by_inverse(0);
   for (int c = 1; c <= Sch::Dim; ++c) {
     T by_undamped = bar[c] - grid.damped * bar[c];
-    if constexpr (Sch::flip) by_undamped -= grid.damped * by_change[c];
+    if constexpr (Sch::planes == 2) by_undamped -= grid.damped * by_change[c];
     by_pull[c - 1] = by_undamped;
     by_inverse += by_undamped * sums[c];
-    if constexpr (Sch::flip) {
+    if constexpr (Sch::planes == 2) {
       by_pull[c - 1] += by_change[c];  // Δv = impulse/m + Δt g enters v as well
       by_inverse += by_pull[c - 1] * impulse[c];
       by_change[c] = by_pull[c - 1] * inverse;
     }
     bar[c] = by_undamped * inverse;
   }
-  if constexpr (Sch::Dim == 2) {
-    by_inverse += bar[dilation_lane] * sums[dilation_lane];
-    bar[dilation_lane] *= inverse;
+  if constexpr (Sch::dilation) {
+    constexpr int lane = Sch::dilation_lane;
+    T& by_mean = (Sch::dilation_plane == 0 ? bar : by_change)[lane];
+    by_inverse += by_mean * (Sch::dilation_plane == 0 ? sums : impulse)[lane];
+    by_mean *= inverse;
   }
   bar[0] = -by_inverse * inverse * inverse;
   return by_pull;

@@ -31,16 +31,30 @@ struct PlaceSums {
   }
 };
 
-/// Adjoint of Coefficients: what the gathered derivatives by a particle's quads bring to its fields. Gathered: the value with w, then Dim
-/// with d and Dim with g as far as the scheme has them.
+/// The derivatives by a particle's quads, gathered: per plane the value with w, then Dim with d and Dim with g as far as it has them.
+template <class Sch>
+struct GatheredBars {
+  using Q = Coefficients<Sch>;
+  static constexpr int Dim = Sch::Dim, per_store = GatheredQuads<Sch>::per_store;
+  static constexpr bool with_d = Sch::p2g_moments, with_g = Sch::p2g_slopes;
+  static constexpr bool full(int plane) { return plane == (Sch::flip ? 1 : 0); }  // has more than the value
+  static constexpr int size(int plane) { return full(plane) ? 1 + Dim * (int(with_d) + int(with_g)) : 1; }
+  static constexpr int first(int plane) { return plane == 0 ? 0 : size(0); }
+  static constexpr int force = first(Sch::flip ? 1 : 0) + 1 + (with_d && with_g ? Dim : 0);
+  static constexpr int dilation = 4 * first(Sch::dilation_plane) + Sch::dilation_lane;
+  static constexpr int count = Sch::planes == 1 ? size(0) : size(0) + size(1), padded = (count + per_store - 1) / per_store * per_store;
+};
+
+/// Adjoint of Coefficients: what the gathered derivatives by a particle's quads bring to its fields.
 template <class Sch>
 JAXMPM_INLINE void coefficients_adjoint(const Particles<typename Sch::T, Sch::Dim>& p, std::size_t s, int count,
-                                        const Pack<typename Sch::T, batch<typename Sch::T>>* gathered, int first_force,
+                                        const Pack<typename Sch::T, batch<typename Sch::T>>* gathered,
                                         const MaterialKernel<typename Sch::T, Sch::Dim>& material,
                                         const MaterialAdjoint<typename Sch::T, Sch::Dim>& material_adjoint,
                                         const StepConstants<typename Sch::T>& step, Particles<typename Sch::T, Sch::Dim>& bar,
                                         MaterialReport& report) {
   using T = typename Sch::T;
+  using G = GatheredBars<Sch>;
   constexpr int W = batch<T>, Dim = Sch::Dim;
   using P = Pack<T, W>;
   const auto quad = [&](int q, int c) { return gathered[4 * q + 1 + c]; };
@@ -51,10 +65,10 @@ JAXMPM_INLINE void coefficients_adjoint(const Particles<typename Sch::T, Sch::Di
     by_mass += quad(0, c) * load(p.velocity[std::size_t(c)].data() + s, count);
     add(bar.velocity[std::size_t(c)], m * quad(0, c));
   }
-  if constexpr (Dim == 2)
+  if constexpr (Sch::dilation)
     if (!p.dilation.empty()) {
-      by_mass += gathered[dilation_lane] * load(p.dilation[0].data() + s, count);
-      add(bar.dilation[0], m * gathered[dilation_lane]);
+      by_mass += gathered[G::dilation] * load(p.dilation[0].data() + s, count);
+      add(bar.dilation[0], m * gathered[G::dilation]);
     }
   if constexpr (Sch::affine) {
     constexpr int first_moment = 1;
@@ -76,8 +90,8 @@ JAXMPM_INLINE void coefficients_adjoint(const Particles<typename Sch::T, Sch::Di
   for (int c = 0; c < Dim; ++c)
     for (int k = 0; k < Dim; ++k) {
       const int at = Symmetric<T, Dim>::index(c, k);
-      by_impulse += quad(first_force + k, c) * P::load(sigma[at]);
-      by_stress[at] += impulse * quad(first_force + k, c);
+      by_impulse += quad(G::force + k, c) * P::load(sigma[at]);
+      by_stress[at] += impulse * quad(G::force + k, c);
     }
   by_mass += by_impulse * per_mass;
   add(bar.mass, by_mass);
@@ -88,7 +102,8 @@ JAXMPM_INLINE void coefficients_adjoint(const Particles<typename Sch::T, Sch::Di
   material_adjoint.stress(p, s, count, by_sigma, bar, report);
 }
 
-/// Adjoint of p2g_tile: adds to `bar` what the derivatives by the nodes' sums, in `arena` ({m̄, p̄}, and FLIP's {–, impulse}), bring.
+/// Adjoint of p2g_tile: adds to `bar` what the derivatives by the nodes' sums, in `arena` ({m̄, p̄}, and {–, impulse} of a second plane),
+/// bring.
 template <class Sch>
 void p2g_adjoint_tile(const Particles<typename Sch::T, Sch::Dim>& p, std::size_t begin, std::size_t end,
                       const MaterialKernel<typename Sch::T, Sch::Dim>& material,
@@ -98,47 +113,39 @@ void p2g_adjoint_tile(const Particles<typename Sch::T, Sch::Dim>& p, std::size_t
   using T = typename Sch::T;
   using Q = Coefficients<Sch>;
   using R = typename StencilRows<Sch>::R;
-  constexpr int W = batch<T>, Dim = Sch::Dim, per_store = GatheredQuads<Sch>::per_store;
-  constexpr bool with_d = Sch::p2g_moments, with_g = Sch::p2g_slopes;
-  constexpr int moments = Sch::mls ? Q::force : (Sch::affine ? Q::affine : -1), slopes = Sch::mls ? -1 : Q::force;
-  // Gathered quads: of FLIP those with the momentum first, then those with the impulse.
-  constexpr int others = Sch::flip ? 1 : 0, kinds = 1 + Dim * (int(with_d) + int(with_g));
-  constexpr int count_of_quads = others + kinds, padded = (count_of_quads + per_store - 1) / per_store * per_store;
-  constexpr int first_force = others + 1 + (with_d && with_g ? Dim : 0);
+  using G = GatheredBars<Sch>;
+  constexpr int W = batch<T>;
   StencilRows<Sch> rows[Sch::planes];
   for (auto& r : rows) r.clear();
   int current = -1;
   for (std::size_t s = begin; s < end; s += W) {
     const int count = int(end - s < std::size_t(W) ? end - s : std::size_t(W));
-    const Stencils<Sch, with_d, with_g, true> t(p, s, count, origin);
+    const Stencils<Sch, G::with_d, G::with_g, true> t(p, s, count, origin);
     const Q q(p, s, count, material, step);
-    ParticleRows<T, 4 * padded> gathered;
+    ParticleRows<T, 4 * G::padded> gathered;
     PlaceSums<Sch> by_place;
     for (int l = 0; l < count; ++l) {
       if (t.base[l] != current) {
         current = t.base[l];
         for (int plane = 0; plane < Sch::planes; ++plane) rows[plane].load(arena + plane * Sch::arena_plane + current * 4);
       }
-      R sums[padded], place[PlaceSums<Sch>::padded];
+      R sums[G::padded], place[PlaceSums<Sch>::padded];
       for (R& x : sums) x = R(T(0));
       for (R& x : place) x = R(T(0));
-      if constexpr (Sch::flip) {
-        gather<Sch, false, false>(rows[0], t, l, sums);
-        gather<Sch, with_d, with_g>(rows[1], t, l, sums + others);
-        contract<Sch, 0, -1, -1>(rows[0], t, l, q.rows.row(l), place);
-        contract<Sch, -1, moments, slopes>(rows[1], t, l, q.rows.row(l), place);
-      } else {
-        gather<Sch, with_d, with_g>(rows[0], t, l, sums);
-        contract<Sch, 0, moments, slopes>(rows[0], t, l, q.rows.row(l), place);
-      }
-      for (int i = 0; i < padded; i += per_store) sum_quads<T, R::lanes>(sums + i).store(gathered.row(l) + 4 * i);
+      static_for<Sch::planes>([&](auto plane) {
+        constexpr bool full = G::full(plane);
+        constexpr PlaneQuads of = Q::in_plane(plane);
+        gather<Sch, full && G::with_d, full && G::with_g>(rows[plane], t, l, sums + G::first(plane));
+        contract<Sch, of.rest, of.moments, of.slopes>(rows[plane], t, l, q.rows.row(l), place);
+      });
+      for (int i = 0; i < G::padded; i += G::per_store) sum_quads<T, R::lanes>(sums + i).store(gathered.row(l) + 4 * i);
       by_place.put(l, place);
     }
     gathered.clear_behind(count);
     Pack<T, W> packs[decltype(gathered)::stride];
     gathered.read(packs);
     by_place.add_to(bar, s, count);
-    coefficients_adjoint<Sch>(p, s, count, packs, first_force, material, material_adjoint, step, bar, report);
+    coefficients_adjoint<Sch>(p, s, count, packs, material, material_adjoint, step, bar, report);
   }
 }
 

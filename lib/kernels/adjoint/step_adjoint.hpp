@@ -19,6 +19,6 @@ struct AdjointKernels {
 
 /// The adjoint kernels of a method. Defined per precision, dimension and spline in kernels/adjoint/adjoint_*.cpp.
 template <class T, int Dim, int S>
-AdjointKernels<T, Dim> adjoint_kernels(deck::Transfer transfer, deck::GradientForm gradient);
+AdjointKernels<T, Dim> adjoint_kernels(const deck::Method& method);
 
 }  // namespace jaxmpm

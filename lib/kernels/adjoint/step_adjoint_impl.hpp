@@ -29,8 +29,8 @@ AdjointKernels<typename Sch::T, Sch::Dim> adjoint_kernels_of() {
 }
 
 template <class T, int Dim, int S>
-AdjointKernels<T, Dim> adjoint_kernels(deck::Transfer transfer, deck::GradientForm gradient) {
-  return with_scheme<T, Dim, S>(transfer, gradient, [](auto scheme) { return adjoint_kernels_of<decltype(scheme)>(); });
+AdjointKernels<T, Dim> adjoint_kernels(const deck::Method& method) {
+  return with_scheme<T, Dim, S>(method, [](auto scheme) { return adjoint_kernels_of<decltype(scheme)>(); });
 }
 
 }  // namespace jaxmpm
