@@ -45,8 +45,9 @@ JAXMPM_INLINE T obstacle_adjoint(deck::ContactKind kind, T friction, const Vecto
 }
 
 /// Adjoint of WallUpdate::velocity. `ObstaclesAdjoint` is a callable (Index, velocity before, derivatives&); `Bar` a callable
-/// (Index, mass, momentum) that adds derivatives by the NodeSums of a node; `CoefficientBar` one (segment, derivative).
-template <class T, int Dim, class Raw, class Obstacles, class ObstaclesAdjoint, class Bar, class CoefficientBar>
+/// (Index, mass, momentum) that adds derivatives by the NodeSums of a node; `CoefficientBar` one (segment, derivative), `VelocityBar` one
+/// (face, component, derivative) for the velocities of the walls.
+template <class T, int Dim, class Raw, class Obstacles, class ObstaclesAdjoint, class Bar, class CoefficientBar, class VelocityBar>
 class WallAdjoint : WallUpdate<T, Dim, Raw, Obstacles> {
   using Update = WallUpdate<T, Dim, Raw, Obstacles>;
   using typename Update::Mirror;
@@ -57,14 +58,64 @@ class WallAdjoint : WallUpdate<T, Dim, Raw, Obstacles> {
   const ObstaclesAdjoint& obstacles_adjoint_;
   const Bar& add_;
   const CoefficientBar& add_coefficient_;
+  const VelocityBar& add_velocity_;
+  bool some_hold_ = false;  // some face holds the material, and so shifts the velocities of images
+
+  /// Adjoint of wall_velocity().
+  JAXMPM_FUNCTION void wall_velocity_adjoint(int face, const Node& node, const V& by) const {
+    for (int c = 0; c < Dim; ++c)
+      if (!this->on_plane(c, node[std::size_t(c)])) add_velocity_(face, c, by[c]);
+  }
+
+  /// Adjoint of reflect() at the faces `through` of a node, one after another, as regards the shift. Only walls that hold the material
+  /// shift it.
+  JAXMPM_FUNCTION void shift_adjoint(const Node& through, const Node& node, V by_shift) const {
+    Mirror m = this->no_mirror();
+    std::array<std::array<bool, Dim>, Dim> turned{};  // before each
+    for (int axis = 0; axis < Dim; ++axis) {
+      turned[std::size_t(axis)] = m.turned;
+      if (through[std::size_t(axis)] >= 0) this->reflect(through[std::size_t(axis)], node, m);
+    }
+    for (int axis = Dim - 1; axis >= 0; --axis) {
+      const int face = through[std::size_t(axis)];
+      if (face < 0) continue;
+      V by_u{};
+      for (int c = 0; c < Dim; ++c) {
+        if (this->sign(face, c) > T(0)) continue;
+        if (c != axis) by_u[c] = (turned[std::size_t(axis)][std::size_t(c)] ? T(-2) : T(2)) * by_shift[c];
+        by_shift[c] = -by_shift[c];
+      }
+      wall_velocity_adjoint(face, node, by_u);
+    }
+  }
+  JAXMPM_FUNCTION bool holds(const Node& through) const {
+    if (!some_hold_) return false;
+    for (const int face : through)
+      if (this->sticks(face)) return true;
+    return false;
+  }
+  /// The faces through which the velocity of `asked` is mirrored.
+  JAXMPM_FUNCTION Node mirrored_through(const Node& asked) const {
+    Node through;
+    for (int axis = 0; axis < Dim; ++axis) {
+      const int face = this->beyond_faces(axis, asked[std::size_t(axis)]) ? this->face_of(axis, asked[std::size_t(axis)]) : -1;
+      through[std::size_t(axis)] = face >= 0 && this->in_contact(face, asked) ? face : -1;
+    }
+    return through;
+  }
 
   JAXMPM_FUNCTION void fold_adjoint(const Node& node, const std::array<int, Dim>& twin_face, int skip, T by_mass,
                                     const V& by_momentum) const {
-    this->for_each_image(node, twin_face, skip, [&](const Node& image, const Mirror& m) {
+    this->for_each_image(node, twin_face, skip, [&](const Node& image, const Mirror& m, const Node& through) {
       V by;
       T by_image_mass = by_mass;
       for (int c = 0; c < Dim; ++c) by[c] = m.sign[c] * by_momentum[c], by_image_mass += m.shift[c] * by_momentum[c];
       add_(image, by_image_mass, by);
+      if (!holds(through)) return;
+      const T mass = this->raw_(image).mass;
+      V by_shift;
+      for (int c = 0; c < Dim; ++c) by_shift[c] = mass * by_momentum[c];
+      shift_adjoint(through, node, by_shift);
     });
   }
 
@@ -98,7 +149,10 @@ class WallAdjoint : WallUpdate<T, Dim, Raw, Obstacles> {
       for (int c = 0; c < Dim; ++c) t[c] = before[std::size_t(axis)][c] - u[c];
       const T by_normal_velocity = bar[axis];
       t[axis] = T(0), bar[axis] = T(0);
+      V by_u = bar;  // u + t: what does not come from t comes from u
       const T by_loss = rub_adjoint<T, Dim>(t, loss, bar);
+      for (int c = 0; c < Dim; ++c) by_u[c] -= bar[c];
+      wall_velocity_adjoint(face, at.node, by_u);
       bar[axis] = by_normal_velocity;
       by_mass -= by_loss * loss / mass;
       if (!(normal > 0)) continue;
@@ -107,11 +161,12 @@ class WallAdjoint : WallUpdate<T, Dim, Raw, Obstacles> {
       by_mass += by_normal * free[axis], by_free[axis] += by_normal * mass;
       reflected_adjoint(face, at, s, T(2) * by_normal);
     }
-    for (int axis = 0; axis < Dim; ++axis) {
+    for (int axis = Dim - 1; axis >= 0; --axis) {  // of several that hold, the last has the word
       const int face = at.on_face[std::size_t(axis)];
-      if (this->sticks(face)) bar = {};
-      else if (face >= 0) bar[axis] = T(0);
+      if (this->sticks(face)) wall_velocity_adjoint(face, at.node, bar), bar = {};
     }
+    for (int axis = 0; axis < Dim; ++axis)
+      if (at.on_face[std::size_t(axis)] >= 0) bar[axis] = T(0);
     for (int c = 0; c < Dim; ++c) bar[c] += by_free[c];
   }
 
@@ -129,8 +184,15 @@ class WallAdjoint : WallUpdate<T, Dim, Raw, Obstacles> {
 
  public:
   JAXMPM_FUNCTION WallAdjoint(const Walls<T, Dim>& walls, const Raw& raw, const Obstacles& obstacles, T cut_off,
-                              const ObstaclesAdjoint& obstacles_adjoint, const Bar& add, const CoefficientBar& add_coefficient)
-      : Update(walls, raw, obstacles, cut_off), obstacles_adjoint_(obstacles_adjoint), add_(add), add_coefficient_(add_coefficient) {}
+                              const ObstaclesAdjoint& obstacles_adjoint, const Bar& add, const CoefficientBar& add_coefficient,
+                              const VelocityBar& add_velocity)
+      : Update(walls, raw, obstacles, cut_off),
+        obstacles_adjoint_(obstacles_adjoint),
+        add_(add),
+        add_coefficient_(add_coefficient),
+        add_velocity_(add_velocity) {
+    for (int face = 0; face < 2 * Dim; ++face) some_hold_ = some_hold_ || this->sticks(face);
+  }
 
   /// Passes the derivatives by the velocity of a node on to the sums that it came from.
   JAXMPM_FUNCTION void velocity(const Node& asked, V bar) const {
@@ -141,6 +203,8 @@ class WallAdjoint : WallUpdate<T, Dim, Raw, Obstacles> {
     for (int c = 0; c < Dim; ++c) free[c] = sum.momentum[c] / sum.mass;
     V v = free;
     const std::array<V, Dim> before = apply_faces(at, sum.mass, free, v);
+    if (some_hold_)
+      if (const Node through = mirrored_through(asked); holds(through)) shift_adjoint(through, asked, bar);
     for (int c = 0; c < Dim; ++c) bar[c] *= at.mirror.sign[c];
     if (this->inside(at.node)) obstacles_adjoint_(at.node, v, bar);
     T by_mass(0);

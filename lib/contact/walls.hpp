@@ -177,28 +177,30 @@ class WallUpdate {
     return s;
   }
 
-  /// Calls f(image, mirror) for a node and those of its images that `folded` adds to it.
+  /// Calls f(image, mirror, through) for a node and those of its images that `folded` adds to it. `through`: the faces that mirror it, per
+  /// axis (−1 for none).
   template <class F>
   JAXMPM_FUNCTION void for_each_image(const Node& node, const std::array<int, Dim>& twin_face, int skip, F f) const {
     for (int subset = 0; subset < (1 << Dim); ++subset) {
-      Node image = node;
+      Node image = node, through;
       Mirror mirror = no_mirror();
       bool valid = true;
       for (int axis = 0; axis < Dim && valid; ++axis) {
+        through[std::size_t(axis)] = -1;
         if (!(subset >> axis & 1)) continue;
-        const int face = twin_face[std::size_t(axis)];
+        const int face = through[std::size_t(axis)] = twin_face[std::size_t(axis)];
         valid = axis != skip && face >= 0;
         if (!valid) break;
         image[std::size_t(axis)] = 2 * plane(face) - node[std::size_t(axis)];
         reflect(face, node, mirror);
       }
-      if (valid) f(image, mirror);
+      if (valid) f(image, mirror, through);
     }
   }
   /// Sums of a node with the twins along the axes of `twin_face` (face per axis or −1) folded onto it, axis `skip` left out.
   JAXMPM_FUNCTION NodeSums<T, Dim> folded(const Node& node, const std::array<int, Dim>& twin_face, int skip) const {
     NodeSums<T, Dim> sum{};
-    for_each_image(node, twin_face, skip, [&](const Node& image, const Mirror& m) {
+    for_each_image(node, twin_face, skip, [&](const Node& image, const Mirror& m, const Node&) {
       const NodeSums<T, Dim> other = raw_(image);
       sum.mass += other.mass;
       for (int c = 0; c < Dim; ++c) sum.momentum[c] += m.sign[c] * other.momentum[c] + m.shift[c] * other.mass;

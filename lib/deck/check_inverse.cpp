@@ -18,7 +18,8 @@ bool may_be_unknown(const std::string& pointer) {
   static const std::regex pattern(
       "/gravity/[0-9]+|/body_force/[0-9]+|/method/(flip_fraction|damping)|/parameters/[^/]+|/materials/[^/]+/[^/]+|/bodies/[0-9]+/velocity/"
       "([0-9]+(/mlp)?|particles)|"
-      "/bodies/[0-9]+/initial_stress/k0|/walls/[^/]+/(coefficient|segments/[0-9]+/coefficient)|/obstacles/[0-9]+/coefficient");
+      "/bodies/[0-9]+/initial_stress/k0|/walls/[^/]+/(coefficient|segments/[0-9]+/coefficient)|"
+      "/walls/(x_[^/]+/velocity/[12]|y_[^/]+/velocity/[02]|z_[^/]+/velocity/[01])|/obstacles/[0-9]+/coefficient");
   return std::regex_match(pointer, pattern);
 }
 

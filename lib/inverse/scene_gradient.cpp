@@ -111,6 +111,7 @@ class SceneGradient {
     static const Parts faces{"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"};
     const auto face = static_cast<std::size_t>(std::find(faces.begin(), faces.end(), parts.at(1)) - faces.begin());
     const std::vector<double>& by_segments = gradient_.coefficient.at(face);
+    if (parts.at(2) == "velocity") return gradient_.wall_velocity.at(face).at(std::stoul(parts.at(3)));
     if (parts.at(2) == "coefficient") return by_segments.at(0);
     return by_segments.at(std::stoul(parts.at(3)));
   }

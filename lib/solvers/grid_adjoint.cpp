@@ -6,7 +6,7 @@
 namespace jaxmpm {
 
 void GridBars::clear(const Model& model, std::size_t segments) {
-  gravity = {}, damping = 0;
+  gravity = {}, damping = 0, wall_velocity = {};
   segment.assign(segments, 0), obstacle.assign(model.obstacles.size(), 0);
   body_force.assign(model.body_force ? model.body_force->slopes() : 0, 0);
 }
@@ -15,6 +15,8 @@ void GridBars::add(const GridBars& block, double dt, double by_damping) {
   for (std::size_t c = 0; c < 3; ++c) gravity[c] += dt * block.gravity[c];
   damping += by_damping * block.damping;
   for (std::size_t k = 0; k < body_force.size(); ++k) body_force[k] += dt * block.body_force[k];
+  for (std::size_t f = 0; f < wall_velocity.size(); ++f)
+    for (std::size_t c = 0; c < 3; ++c) wall_velocity[f][c] += block.wall_velocity[f][c];
   for (std::size_t k = 0; k < segment.size(); ++k) segment[k] += block.segment[k];
   for (std::size_t k = 0; k < obstacle.size(); ++k) obstacle[k] += block.obstacle[k];
 }
@@ -162,8 +164,10 @@ auto GridAdjoint<T, Dim>::wall_block_adjoint(const Blocks<Dim>& blocks, std::siz
     for (int c = 0; c < Dim; ++c) sum.momentum[c] += by_momentum[c];
   };
   const auto add_coefficient = [&](int segment, T by) { block_[b].segment[std::size_t(segment)] += double(by); };
-  const WallAdjoint<T, Dim, WallSums<T, Dim>, decltype(no_obstacles), decltype(obstacles), decltype(add), decltype(add_coefficient)> walls(
-      forward_.walls(), raw, no_obstacles, constants.mass_cut_off, obstacles, add, add_coefficient);
+  const auto add_velocity = [&](int face, int c, T by) { block_[b].wall_velocity[std::size_t(face)][std::size_t(c)] += double(by); };
+  const WallAdjoint<T, Dim, WallSums<T, Dim>, decltype(no_obstacles), decltype(obstacles), decltype(add), decltype(add_coefficient),
+                    decltype(add_velocity)>
+      walls(forward_.walls(), raw, no_obstacles, constants.mass_cut_off, obstacles, add, add_coefficient, add_velocity);
   T* bars = own_.data() + b * kernels_.own_size;
   std::vector<NearFace> near_face;
   for (int own = 0; own < cells; ++own) {

@@ -11,6 +11,7 @@ struct GridBars {
   Point gravity{};                 // per m/s²
   double damping = 0;              // per 1/s
   std::vector<double> body_force;  // BodyForce::slopes(), per unit of their numbers
+  std::array<Point, 6> wall_velocity{};
   std::vector<double> segment;     // friction coefficients of all faces' segments, in the order of WallTable
   std::vector<double> obstacle;    // coefficients of the obstacles, in deck order
   void clear(const Model& model, std::size_t segments);

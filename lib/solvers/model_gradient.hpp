@@ -30,6 +30,7 @@ struct ModelGradient {
   double flip_fraction = 0;
   double damping = 0;                              // per 1/s
   std::vector<double> body_force;                  // BodyForce::slopes()
+  std::array<Point, 6> wall_velocity{};            // per m/s
   std::array<std::vector<double>, 6> coefficient;  // of the faces' segments, as FaceLaw::coefficient
   std::vector<double> obstacle_coefficient;        // in deck order
   std::vector<BodyGradient> bodies;                // in deck order

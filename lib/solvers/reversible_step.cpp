@@ -259,7 +259,7 @@ template <class T, int Dim>
 ModelGradient ReversibleStep<T, Dim>::gradient() const {
   ModelGradient g;
   const GridBars& grid = grid_adjoint_.bars();
-  g.gravity = grid.gravity, g.damping = grid.damping, g.body_force = grid.body_force;
+  g.gravity = grid.gravity, g.damping = grid.damping, g.body_force = grid.body_force, g.wall_velocity = grid.wall_velocity;
   g.obstacle_coefficient = grid.obstacle, g.flip_fraction = flip_fraction_;
   std::size_t segment = 0;
   for (std::size_t f = 0; f < 2 * Dim; ++f)

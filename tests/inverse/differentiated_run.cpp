@@ -209,6 +209,32 @@ TEST_CASE("gradients by damping and by the numbers of a body force agree with ce
   check_number(&Numbers::k, 1e-4, g.body_force[4]);
 }
 
+TEST_CASE("gradients by the velocities of walls agree with central differences") {
+  const int dim = GENERATE(2, 3);
+  const auto transfer = GENERATE(deck::Transfer::apic, deck::Transfer::flip);
+  const auto kind = GENERATE(deck::ContactKind::friction, deck::ContactKind::no_slip);
+  const bool mixed = GENERATE(false, true);  // walls that hold beside ones that rub
+  CAPTURE(dim, int(transfer), int(kind), mixed);
+  Model model = scene(dim, transfer, water(2), elastic(), kind);
+  for (std::size_t f = 0; mixed && f < 2 * std::size_t(dim); f += 3) {
+    FaceLaw& other = model.faces[f];
+    other.kind = kind == deck::ContactKind::friction ? deck::ContactKind::no_slip : deck::ContactKind::friction;
+    other.coefficient = {}, other.to = {};
+    if (other.kind == deck::ContactKind::friction) other.coefficient = {0.4}, other.to = {1e3};
+  }
+  model = driven(model);
+  Everything observer({4e-4, 1e-3});
+  const StepSequence steps = record_run(model, observer, {});
+  const ModelGradient g = gradient_of(model, steps, observer, 4);
+  std::map<std::string, Number> all;
+  for (std::size_t f = 0; f < 2 * std::size_t(dim); ++f)
+    for (std::size_t c = 0; c < std::size_t(dim); ++c)
+      if (c != f / 2)
+        all["face " + std::to_string(f) + " along " + std::to_string(c)] = {[=](Model& m) -> double& { return m.faces[f].velocity[c]; },
+                                                                           1e-5, g.wall_velocity[f][c]};
+  check(model, all, steps, observer);
+}
+
 TEST_CASE("gradients by a body force that is not finite where no material is") {
   Model model = scene(2, deck::Transfer::apic, water(2), elastic(), deck::ContactKind::friction);
   double right = 0;  // of all material, cells

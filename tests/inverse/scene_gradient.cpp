@@ -36,7 +36,7 @@ const char* const stacked = R"deck({
     { "name": "base", "material": "clay", "shape": { "box": { "min": [0, 0], "max": [0.7, 0.1] } }, "initial_stress": "geostatic" },
     { "name": "ball", "material": "rubber", "shape": { "sphere": { "center": [0.8, 0.5], "radius": 0.1 } } },
     { "name": "pebble", "material": "sand", "shape": { "box": { "min": [0.8, 0], "max": [0.9, 0.1] } } } ],
-  "walls": { "x_min": { "kind": "friction", "coefficient": 0.3 },
+  "walls": { "x_min": { "kind": "friction", "coefficient": 0.3, "velocity": [0, 0.2] },
              "y_min": { "kind": "friction", "segments": [ { "to": 0.4, "coefficient": 0.5 }, { "to": 1.0, "coefficient": 0.1 } ] } },
   "obstacles": [ { "name": "beam", "shape": { "box": { "min": [0.2, 0.45], "max": [0.3, 0.5] } }, "kind": "friction", "coefficient": 0.2 } ],
   "output": { "interval": 0.05 } })deck";
@@ -62,6 +62,7 @@ ModelGradient random_gradient(const Model& model) {
   g.flip_fraction = random.normal();
   for (std::size_t face = 0; face < 6; ++face)
     for (std::size_t k = 0; k < model.faces[face].coefficient.size(); ++k) g.coefficient[face].push_back(random.normal());
+  for (Point& face : g.wall_velocity) face = {random.normal(), random.normal(), 0};
   for (std::size_t o = 0; o < model.obstacles.size(); ++o) g.obstacle_coefficient.push_back(random.normal());
   for (const Body& body : model.bodies) {
     BodyGradient by;
@@ -96,6 +97,8 @@ double linear_loss(const Model& model, const ModelGradient& g) {
   for (int a = 0; a < model.dim; ++a) sum += g.gravity[a] * model.gravity[a];
   for (std::size_t face = 0; face < 6; ++face)
     for (std::size_t k = 0; k < g.coefficient[face].size(); ++k) sum += g.coefficient[face][k] * model.faces[face].coefficient[k];
+  for (std::size_t face = 0; face < 6; ++face)
+    for (std::size_t c = 0; c < 2; ++c) sum += g.wall_velocity[face][c] * model.faces[face].velocity[c];
   for (std::size_t o = 0; o < g.obstacle_coefficient.size(); ++o) sum += g.obstacle_coefficient[o] * model.obstacles[o].coefficient;
   for (std::size_t b = 0; b < model.bodies.size(); ++b) sum += loss_of_body(model.bodies[b], g.bodies[b]);
   return sum;
@@ -146,6 +149,7 @@ TEST_CASE("every kind of number: step, masses, weight and expressions") {
                   "/materials/rubber/density",
                   "/materials/rubber/youngs_modulus",
                   "/walls/x_min/coefficient",
+                  "/walls/x_min/velocity/1",
                   "/walls/y_min/segments/0/coefficient",
                   "/walls/y_min/segments/1/coefficient",
                   "/obstacles/0/coefficient",
