@@ -1,9 +1,11 @@
 // jaxmpm gradient: loss and gradient of a deck at the start of its unknowns, and whether the gradient is right.
 #include <spdlog/fmt/fmt.h>
 
+#include <cmath>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "commands.hpp"
 #include "core/error.hpp"
@@ -88,22 +90,58 @@ void print_check(const GradientCheck& check) {
                            check.particle_steps, 100 * share, check.verdict);
 }
 
+/// A gradient beside that of the same deck in double precision.
+struct SinglePrecision {
+  static constexpr double most = 1e-2;  // an optimiser goes the same way with it
+  double error;                         // length of the difference over that of the gradient, each variable in its scale
+  bool good() const { return error <= most; }
+};
+
+SinglePrecision compared(const Unknowns& unknowns, const Evaluation& single, const Evaluation& exact) {
+  const Variables &u = unknowns.space().start, &scale = unknowns.space().scale;
+  const Variables found = unknowns.gradient(u, single.gradient), right = unknowns.gradient(u, exact.gradient);
+  double off = 0, size = 0;
+  for (std::size_t i = 0; i < u.size(); ++i) off += std::pow(scale[i] * (found[i] - right[i]), 2), size += std::pow(scale[i] * right[i], 2);
+  return {size > 0 ? std::sqrt(off / size) : off > 0 ? HUGE_VAL : 0};
+}
+
+/// Loss and gradient of a deck at the start of its unknowns.
+class Start {
+ public:
+  explicit Start(const deck::Deck& deck) : unknowns(deck), objective(deck, unknowns.pointers(), [] { return stop_signal() != 0; }) {
+    const Values values = unknowns.values(unknowns.space().start);
+    objective.renew_steps(values);
+    at = objective.gradient(values);
+  }
+  Unknowns unknowns;
+  RunObjective objective;
+  Evaluation at;
+};
+
+/// Differences of losses in single precision are too rough to check a gradient by: the deck is checked in double precision then, and the
+/// gradient compared with that one's.
+bool check(const GradientOptions& options, const deck::Deck& deck, Start& start, Json& json) {
+  std::optional<Start> in_double;
+  if (deck.method.precision == deck::Precision::f32) in_double.emplace(deck::with_assignments(deck, {"/method/precision=\"f64\""}));
+  Start& checked = in_double ? *in_double : start;
+  const GradientCheck check = check_gradient(checked.unknowns, checked.objective, options.directions, options.seed);
+  json["check"] = check_json(check);
+  if (!options.json) print_check(check);
+  if (!in_double) return check.good;
+  const SinglePrecision single = compared(start.unknowns, start.at, in_double->at);
+  json["check"]["single_precision"] = {{"relative_error", single.error}, {"verdict", single.good() ? "good" : "bad"}};
+  if (!options.json)
+    std::cout << fmt::format("(All that in double precision.) Single precision: the gradient is off by {:.1e} of its length: {}\n",
+                             single.error, single.good() ? "good" : "BAD");
+  return check.good && single.good();
+}
+
 int evaluate(const GradientOptions& options) {
   const deck::Deck deck = deck::read_deck(options.deck, options.assignments);
-  const Unknowns unknowns(deck);
-  RunObjective objective(deck, unknowns.pointers(), [] { return stop_signal() != 0; });
-  const Values start = unknowns.values(unknowns.space().start);
-  objective.renew_steps(start);
-  const Evaluation at = objective.gradient(start);
-  Json json = gradient_json(at, unknowns);
-  if (!options.json) print_gradient(at, unknowns);
-  bool good = true;
-  if (options.check) {
-    const GradientCheck check = check_gradient(unknowns, objective, options.directions, options.seed);
-    good = check.good;
-    json["check"] = check_json(check);
-    if (!options.json) print_check(check);
-  }
+  Start start(deck);
+  Json json = gradient_json(start.at, start.unknowns);
+  if (!options.json) print_gradient(start.at, start.unknowns);
+  const bool good = !options.check || check(options, deck, start, json);
   if (options.json) std::cout << json.dump() << '\n';
   return static_cast<int>(good ? ExitCode::done : ExitCode::bad_verdict);
 }

@@ -238,6 +238,8 @@ void GridAdjoint<T, Dim>::collect_wall_block(const Blocks<Dim>& blocks, std::siz
   add_by_pull(blocks, b, by_pull, time);
 }
 
+template class GridAdjoint<float, 2>;
+template class GridAdjoint<float, 3>;
 template class GridAdjoint<double, 2>;
 template class GridAdjoint<double, 3>;
 

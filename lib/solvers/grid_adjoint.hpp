@@ -12,8 +12,8 @@ struct GridBars {
   double damping = 0;              // per 1/s
   std::vector<double> body_force;  // BodyForce::slopes(), per unit of their numbers
   std::array<Point, 6> wall_velocity{};
-  std::vector<double> segment;     // friction coefficients of all faces' segments, in the order of WallTable
-  std::vector<double> obstacle;    // coefficients of the obstacles, in deck order
+  std::vector<double> segment;   // friction coefficients of all faces' segments, in the order of WallTable
+  std::vector<double> obstacle;  // coefficients of the obstacles, in deck order
   void clear(const Model& model, std::size_t segments);
   /// Adds those of a block, which are by Δt g, Δt b and by the part of the velocity that damping takes.
   void add(const GridBars& block, double dt, double damping);

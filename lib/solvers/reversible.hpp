@@ -44,7 +44,7 @@ class ReversibleSolver {
   virtual std::uint64_t at_kinks() const = 0;
 };
 
-/// Builds a reversible stepper of a model on the host. Throws DeckError where the method has no adjoint (single precision).
+/// Builds a reversible stepper of a model on the host. Throws DeckError where the method has no adjoint (material at rest).
 std::unique_ptr<ReversibleSolver> make_reversible_solver(const Model& model);
 
 }  // namespace jaxmpm

@@ -290,6 +290,8 @@ BodyGradient ReversibleStep<T, Dim>::body_gradient(std::size_t b) const {
   return by;
 }
 
+template class ReversibleStep<float, 2>;
+template class ReversibleStep<float, 3>;
 template class ReversibleStep<double, 2>;
 template class ReversibleStep<double, 3>;
 

@@ -25,6 +25,12 @@ std::unique_ptr<Solver> make_host_solver(const Model& model) {
   return std::make_unique<ExplicitStep<T, 3>>(model);
 }
 
+template <class T>
+std::unique_ptr<ReversibleSolver> make_reversible(const Model& model) {
+  if (model.dim == 2) return std::make_unique<ReversibleStep<T, 2>>(model);
+  return std::make_unique<ReversibleStep<T, 3>>(model);
+}
+
 }  // namespace
 
 #if defined(KOKKOS_ENABLE_CUDA)
@@ -55,10 +61,7 @@ std::unique_ptr<ReversibleSolver> make_reversible_solver(const Model& model) {
   check_extent(model);
   if (model.method.rest)
     throw DeckError("/method/rest", "a gradient follows every particle through every step; remove it to compute gradients");
-  if (model.method.precision != deck::Precision::f64)
-    throw DeckError("/method/precision", "gradients are computed in double precision; set it to \"f64\"");
-  if (model.dim == 2) return std::make_unique<ReversibleStep<double, 2>>(model);
-  return std::make_unique<ReversibleStep<double, 3>>(model);
+  return model.method.precision == deck::Precision::f32 ? make_reversible<float>(model) : make_reversible<double>(model);
 }
 
 }  // namespace jaxmpm

@@ -209,6 +209,46 @@ TEST_CASE("gradients by damping and by the numbers of a body force agree with ce
   check_number(&Numbers::k, 1e-4, g.body_force[4]);
 }
 
+TEST_CASE("gradients in single precision are those in double precision to within rounding") {
+  const int dim = GENERATE(2, 3);
+  const auto transfer = GENERATE(deck::Transfer::pic, deck::Transfer::flip, deck::Transfer::apic, deck::Transfer::tpic);
+  const auto basis = GENERATE(deck::Basis::linear, deck::Basis::quadratic, deck::Basis::cubic);
+  const bool soil = GENERATE(false, true);
+  CAPTURE(dim, int(transfer), int(basis), soil);
+  Model model = soil ? scene(dim, transfer, sand(), rubber(), deck::ContactKind::friction)
+                     : driven(scene(dim, transfer, water(2), elastic(), deck::ContactKind::no_slip));
+  model.method.basis = basis, model.method.volume_averaging = soil ? 0.5 : 0;
+  Everything observer({4e-4, 2e-3});
+  const StepSequence steps = record_run(model, observer, {});
+  const ModelGradient exact = gradient_of(model, steps, observer, 4);
+  model.method.precision = deck::Precision::f32;
+  const ModelGradient single = gradient_of(model, steps, observer, 4);
+
+  const auto close = [](double a, double b, double size) { return std::abs(a - b) <= 1e-3 * std::max(std::abs(b), size); };
+  double by_walls = 0;  // the largest: sums over nodes of either sign are as uncertain everywhere
+  for (const Point& face : exact.wall_velocity)
+    for (const double by : face) by_walls = std::max(by_walls, std::abs(by));
+  for (std::size_t c = 0; c < std::size_t(dim); ++c) CHECK(close(single.gravity[c], exact.gravity[c], std::abs(exact.gravity[1])));
+  CHECK(close(single.damping, exact.damping, 0));
+  for (std::size_t f = 0; f < 6; ++f) {
+    for (std::size_t k = 0; k < exact.coefficient[f].size(); ++k) CHECK(close(single.coefficient[f][k], exact.coefficient[f][k], 1e-3));
+    for (std::size_t c = 0; c < 3; ++c) CHECK(close(single.wall_velocity[f][c], exact.wall_velocity[f][c], 0.1 * by_walls));
+  }
+  for (std::size_t b = 0; b < exact.bodies.size(); ++b) {
+    for (const auto& [key, value] : exact.bodies[b].material) {
+      INFO(key);
+      CHECK(close(single.bodies[b].material.at(key), value, 0));
+    }
+    double off = 0, size = 0;
+    for (std::size_t p = 0; p < exact.bodies[b].initial.velocity.size(); ++p)
+      for (std::size_t d = 0; d < 3; ++d) {
+        const double v = exact.bodies[b].initial.velocity[p][d];
+        off += std::pow(single.bodies[b].initial.velocity[p][d] - v, 2), size += v * v;
+      }
+    CHECK(std::sqrt(off / size) <= 1e-4);
+  }
+}
+
 TEST_CASE("gradients by the velocities of walls agree with central differences") {
   const int dim = GENERATE(2, 3);
   const auto transfer = GENERATE(deck::Transfer::apic, deck::Transfer::flip);
@@ -231,7 +271,7 @@ TEST_CASE("gradients by the velocities of walls agree with central differences")
     for (std::size_t c = 0; c < std::size_t(dim); ++c)
       if (c != f / 2)
         all["face " + std::to_string(f) + " along " + std::to_string(c)] = {[=](Model& m) -> double& { return m.faces[f].velocity[c]; },
-                                                                           1e-5, g.wall_velocity[f][c]};
+                                                                            1e-5, g.wall_velocity[f][c]};
   check(model, all, steps, observer);
 }
 
@@ -268,6 +308,7 @@ TEST_CASE("gradients of a run that sorts its particles on the way agree with cen
 
 TEST_CASE("a gradient has the same bits whatever memory and disk it is given, and whether sums of nodes are kept or made again") {
   Model model = scene(2, deck::Transfer::apic, water(), sand(), deck::ContactKind::friction);
+  model.method.precision = GENERATE(deck::Precision::f64, deck::Precision::f32);
   model.time.step = {};
   model.time.cfl = 0.5;
   Everything observer({0.01, 0.02, 0.03});

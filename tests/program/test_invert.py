@@ -281,6 +281,21 @@ class Gradient(InverseTest):
         for words in ("Taylor", "slope", "dot prod", "particles at kinks", "VERDICT: good"):
             self.assertIn(words, said)
 
+    def test_single_precision(self):
+        exact, single = (json.loads(self.call("gradient", self.deck(), "--json", "--threads", "1", "--set", f'/method/precision="{name}"').stdout) for name in ("f64", "f32"))
+        self.assertNotEqual(single["gradient"], exact["gradient"])
+        for pointer, by in exact["gradient"].items():
+            self.assertAlmostEqual(single["gradient"][pointer] / by, 1, delta=1e-3)
+        said = self.expect(DONE, "gradient", self.deck(), "--check", "--directions", "2", "--threads", "1", "--set", '/method/precision="f32"')
+        self.assertRegex(said, r"VERDICT: good.*\n.*Single precision: the gradient is off by .*: good")
+
+    def test_velocity_of_a_wall(self):
+        walls = {"y_min": {"kind": "no_slip", "velocity": [0.2, 0]}}
+        deck = self.write(scene(0.1, 0, walls=walls, inverse=inverse([{"path": "/walls/y_min/velocity/0"}])))
+        self.assertIn("VERDICT: good", self.expect(DONE, "gradient", deck, "--check", "--directions", "1", "--threads", "1"))
+        across = self.write(scene(0.1, 0, walls=walls, inverse=inverse([{"path": "/walls/y_min/velocity/1"}])))
+        self.assertIn("cannot be an unknown", self.expect(DECK, "gradient", across))
+
     def test_bench(self):
         done = self.call("bench", self.deck(), "--steps", "50", "--gradient", "--json", "--threads", "1")
         self.assertEqual(done.returncode, DONE, done.stderr)
