@@ -72,6 +72,32 @@ void check_initial_stress(const Deck& deck, const Place& root) {
   }
 }
 
+/// Points have no inside: they can be a body, but no part of another shape and no obstacle.
+void check_points_in(const Shape& shape, const Place& place, bool whole) {
+  if (std::holds_alternative<Points>(shape.kind) && !whole)
+    place.key("points").problem("points have no inside: they can be the whole shape of a body only; choose another shape");
+  const auto parts = [&](const std::vector<Shape>& shapes, const char* key) {
+    for (std::size_t i = 0; i < shapes.size(); ++i) check_points_in(shapes[i], place.key(key).item(i), false);
+  };
+  if (const auto* all = std::get_if<Union>(&shape.kind)) parts(all->shapes, "union");
+  if (const auto* both = std::get_if<Difference>(&shape.kind)) parts(both->shapes, "difference");
+}
+
+void check_points(const Deck& deck, const Place& root) {
+  for (std::size_t i = 0; i < deck.bodies.size(); ++i)
+    if (sound(root, join(item("bodies", i), "shape"))) check_points_in(deck.bodies[i].shape, root.key("bodies").item(i).key("shape"), true);
+  for (std::size_t i = 0; i < deck.obstacles.size(); ++i)
+    if (sound(root, join(item("obstacles", i), "shape")))
+      check_points_in(deck.obstacles[i].shape, root.key("obstacles").item(i).key("shape"), false);
+  const bool points = std::any_of(deck.bodies.begin(), deck.bodies.end(), [](const Body& body) { return body.by_points(); });
+  for (std::size_t i = 0; i < deck.bodies.size() && points; ++i) {
+    const InitialStress& stress = deck.bodies[i].initial_stress;
+    const std::string pointer = join(item("bodies", i), "initial_stress");
+    if (stress.kind != InitialStress::Kind::none && !stress.surface && sound(root, pointer))
+      root.reader.problem(pointer, "needs surface {point}: depth is measured along lines of a lattice, which points of a file do not form");
+  }
+}
+
 std::set<std::string> identifiers(const std::string& expression) {
   std::set<std::string> names;
   for (std::size_t i = 0; i < expression.size();) {
@@ -170,6 +196,7 @@ void check_scene(const Deck& deck, const Place& root) {
   check_unique(names_in(deck.obstacles), "obstacles", root);
   check_materials(deck, root);
   check_initial_stress(deck, root);
+  check_points(deck, root);
   check_parameters(deck, root);
   check_walls(deck, root);
   check_body_force(deck, root);

@@ -92,6 +92,9 @@ struct Layer {
   double thickness = 0;
   std::variant<std::vector<Numbers>, AreaFile> area;
 };
+struct Points {
+  std::string file;
+};
 struct Union {
   std::vector<Shape> shapes;
 };
@@ -99,7 +102,7 @@ struct Difference {
   std::vector<Shape> shapes;
 };  // exactly two
 struct Shape {
-  std::variant<Box, Sphere, Cylinder, Polygon, Mesh, HeightMap, Layer, Union, Difference> kind;
+  std::variant<Box, Sphere, Cylinder, Polygon, Mesh, HeightMap, Layer, Points, Union, Difference> kind;
 };
 
 struct Mlp {
@@ -138,6 +141,7 @@ struct Body {
   Velocity velocity;
   InitialStress initial_stress;
   std::optional<Jitter> jitter;
+  bool by_points() const { return std::holds_alternative<Points>(shape.kind); }  // its particles lie on no lattice
 };
 
 enum class ContactKind { slip, no_slip, separate, friction, periodic /* walls only */ };

@@ -79,7 +79,8 @@ void describe(Description<Jitter>& d) {
 
 void describe(Description<Body>& d) {
   d.is("body",
-       "A body of one material. Its particles lie on a lattice aligned to the grid, inside if their centre is; bodies may not overlap.");
+       "A body of one material. Its particles lie on a lattice aligned to the grid, inside if their centre is, unless a file places them; "
+       "bodies may not overlap.");
   d.required("name", &Body::name).help("Names its results; unique among bodies.");
   d.required("material", &Body::material).help("Name of a material of the deck.");
   d.required("shape", &Body::shape).help("Where it is at the start.");
@@ -87,15 +88,17 @@ void describe(Description<Body>& d) {
       .from(1)
       .to(4096)
       .when(
-          {"spacing"}, [](const Body& body) { return !body.spacing; }, "no spacing given")
+          {"spacing", "shape"}, [](const Body& body) { return !body.spacing && !body.by_points(); }, "no spacing and no points given")
       .otherwise("4 in 2D, 8 in 3D",
                  [](Body& body, const described::Reader& reader) {
-                   if (!body.spacing) body.particles_per_cell = 1 << reader.dimension();
+                   if (!body.spacing && !body.by_points()) body.particles_per_cell = 1 << reader.dimension();
                  })
       .help("A square in 2D, a cube in 3D.");
   d.optional("spacing", &Body::spacing)
       .unit("m")
       .above(0)
+      .when(
+          {"shape"}, [](const Body& body) { return !body.by_points(); }, "a shape other than points")
       .otherwise("from particles_per_cell")
       .help("Of the lattice, instead of particles_per_cell.");
   d.optional("velocity", &Body::velocity)
@@ -112,7 +115,11 @@ void describe(Description<Body>& d) {
           "By depth along gravity below the highest material on the same line, or below `surface`: \"hydrostatic\"; \"geostatic\" with K0 "
           "= ν/(1 − ν); "
           "or an object with `kind` or `k0`, and `surface`. Gravity must be along an axis or `surface` given.");
-  d.optional("jitter", &Body::jitter).word("none").help("Random displacement of the particles.");
+  d.optional("jitter", &Body::jitter)
+      .word("none")
+      .when(
+          {"shape"}, [](const Body& body) { return !body.by_points(); }, "a shape other than points")
+      .help("Random displacement of the particles.");
   d.check({"name"}, [](const Body& body, const described::Place& place) { described::check_name(body.name, place.key("name")); });
   d.check({"particles_per_cell"}, check_particles_per_cell);
   d.check({"initial_stress"}, check_initial_stress_surface);

@@ -81,6 +81,16 @@ void describe(Description<Layer>& d) {
       .help("Where it lies, in plan: the points of a polygon (3D) or two ends (2D), or a file of polygons.");
 }
 
+void describe(Description<Points>& d) {
+  d.is("points", "Particles placed one by one by a file; only as the whole shape of a body.", family);
+  d.required("file", &Points::file)
+      .items(1)
+      .help(
+          "CSV with the columns x, y[, z] (m) and volume (m³; in 2D m², of a slice one metre thick), looked for beside the deck. Ids "
+          "follow "
+          "the rows.");
+}
+
 void describe(Description<Union>& d) { d.is("union", "All of several shapes.", family); }
 void describe(Description<Difference>& d) { d.is("difference", "The first shape without the second.", family); }
 

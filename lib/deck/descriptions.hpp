@@ -29,6 +29,7 @@ void describe(Description<Mesh>& d);
 void describe(Description<HeightMap>& d);
 void describe(Description<AreaFile>& d);
 void describe(Description<Layer>& d);
+void describe(Description<Points>& d);
 void describe(Description<Union>& d);
 void describe(Description<Difference>& d);
 void describe(Description<Mlp>& d);

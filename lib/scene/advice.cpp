@@ -78,6 +78,7 @@ class Adviser {
 
   void about_particles() {
     for (const deck::Body& body : deck_.bodies) {
+      if (body.by_points()) continue;
       const double along = body.spacing ? model_.cell_size / *body.spacing
                                         : std::pow(double(body.particles_per_cell.value_or(1 << model_.dim)), 1.0 / model_.dim);
       constexpr double two = 2 - 1e-6;

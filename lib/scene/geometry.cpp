@@ -20,6 +20,7 @@ struct MakeGeometry {
   GeometryPointer operator()(const deck::Mesh& s) const { return make_mesh(s, frame, pointer + "/mesh"); }
   GeometryPointer operator()(const deck::HeightMap& s) const { return make_height_map(s, frame, pointer + "/height_map"); }
   GeometryPointer operator()(const deck::Layer& s) const { return make_layer(s, frame, pointer + "/layer"); }
+  GeometryPointer operator()(const deck::Points& s) const { return make_points(s, frame, pointer + "/points"); }
   GeometryPointer operator()(const deck::Union& s) const { return make_union(parts(s.shapes, pointer + "/union")); }
   GeometryPointer operator()(const deck::Difference& s) const {
     const std::string place = pointer + "/difference";

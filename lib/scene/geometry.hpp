@@ -45,6 +45,7 @@ GeometryPointer make_polygon(const deck::Polygon& shape, const Frame& frame, con
 GeometryPointer make_mesh(const deck::Mesh& shape, const Frame& frame, const std::string& pointer);
 GeometryPointer make_height_map(const deck::HeightMap& shape, const Frame& frame, const std::string& pointer);
 GeometryPointer make_layer(const deck::Layer& shape, const Frame& frame, const std::string& pointer);
+GeometryPointer make_points(const deck::Points& shape, const Frame& frame, const std::string& pointer);
 GeometryPointer make_union(std::vector<GeometryPointer> parts);
 GeometryPointer make_difference(GeometryPointer from, GeometryPointer taken);
 

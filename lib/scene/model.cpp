@@ -54,10 +54,11 @@ const deck::Material& material_of(const deck::Deck& deck, std::size_t body) {
   return material->second;
 }
 
-/// Mass of a lattice cell at the density of the particle: its volume is that of the lattice.
-void set_masses(Body& body, double volume) {
-  const double mass = reference_density(body.material) * volume;
-  for (std::size_t p = 0; p < body.initial.mass.size(); ++p) body.initial.mass[p] = mass * (1 + body.initial.compression[p]);
+/// Mass of a particle's volume (of the lattice, or by its file) at its density.
+void set_masses(Body& body, const Seeds& seeds, const Frame& frame) {
+  const double density = reference_density(body.material);
+  for (std::size_t p = 0; p < body.initial.mass.size(); ++p)
+    body.initial.mass[p] = density * seeds.volume(p, frame) * (1 + body.initial.compression[p]);
 }
 
 std::vector<Body> place_bodies(const deck::Deck& deck, const Frame& frame, const SeededScene& scene,
@@ -149,7 +150,7 @@ Model build_model(const deck::Deck& deck) {
   model.bodies = place_bodies(deck, frame, scene, obstacles);
   set_initial_stress(deck, frame, scene.seeds, model.bodies);
   for (std::size_t i = 0; i < model.bodies.size(); ++i) {
-    set_masses(model.bodies[i], std::pow(scene.seeds[i].lattice.spacing * frame.cell_size, frame.dim));
+    set_masses(model.bodies[i], scene.seeds[i], frame);
     set_initial_velocity(deck, frame, i, model.bodies[i].initial);
   }
   model.body_force = make_body_force(deck, frame, model.bodies);

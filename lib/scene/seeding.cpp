@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/error.hpp"
+#include "fields/files.hpp"
 #include "fields/random.hpp"
 
 namespace jaxmpm {
@@ -47,6 +48,7 @@ class BodySeeder {
   }
 
   Seeds seed() {
+    if (const auto* points = std::get_if<deck::Points>(&body().shape.kind)) return seed_points(*points);
     seeds_.lattice = make_lattice(body(), frame_, body_pointer(index_));
     check_extent();
     const std::int64_t first = seeds_.lattice.first_at_or_above(bounds_.lower[0]),
@@ -58,6 +60,28 @@ class BodySeeder {
 
  private:
   const deck::Body& body() const { return deck_.bodies[index_]; }
+
+  /// What stands where obstacles or other bodies are is an error of the file: it is not cut, as its volumes are its own.
+  Seeds seed_points(const deck::Points& points) {
+    const std::string pointer = body_pointer(index_) + "/shape/points";
+    seeds_.points = read_points(points, frame_, pointer);
+    seeds_.count = seeds_.points->position.size();
+    for (std::size_t p = 0; p < seeds_.count; ++p) {
+      const Point& place = seeds_.points->position[p];
+      const auto inside = [&](const Geometry& shape) {
+        shape.spans(place, other_);
+        return contains(other_, place[frame_.up()]);
+      };
+      const auto fail = [&](const std::string& what) {
+        bad_file(pointer + "/file", seeds_.points->file, seeds_.points->lines[p],
+                 frame_.text(place) + " lies inside " + what + "; leave the particle out or move one of the two");
+      };
+      if (std::any_of(obstacles_.begin(), obstacles_.end(), [&](const Geometry* o) { return inside(*o); })) fail("an obstacle");
+      for (const std::size_t j : neighbours_)
+        if (inside(*shapes_[j])) fail("body '" + deck_.bodies[j].name + "'");
+    }
+    return std::move(seeds_);
+  }
 
   /// Where the bounds are only rough, the columns are checked one by one; with a shape far larger than the domain there would be no end to
   /// them.
@@ -160,6 +184,10 @@ bool holds(const Geometry& shape, const Point& place, int up, Spans& scratch) {
 
 }  // namespace
 
+double Seeds::volume(std::size_t p, const Frame& frame) const {
+  return points ? points->volume[p] : std::pow(lattice.spacing * frame.cell_size, frame.dim);
+}
+
 std::vector<GeometryPointer> obstacle_shapes(const deck::Deck& deck, const Frame& frame) {
   std::vector<GeometryPointer> shapes;
   for (std::size_t i = 0; i < deck.obstacles.size(); ++i)
@@ -177,6 +205,7 @@ SeededScene seed_bodies(const deck::Deck& deck, const Frame& frame, const std::v
 
 std::vector<Point> seed_positions(const deck::Body& body, const Frame& frame, const Geometry& shape, const Seeds& seeds,
                                   const std::vector<GeometryPointer>& obstacles, std::uint32_t first_id) {
+  if (seeds.points) return seeds.points->position;
   std::vector<Point> positions;
   positions.reserve(seeds.count);
   const int up = frame.up();

@@ -1,17 +1,24 @@
 #pragma once
 // Where a deck's bodies have particles: the lattice places inside each shape and outside every obstacle.
+#include <optional>
 #include <vector>
 
 #include "scene/lattice.hpp"
+#include "scene/points.hpp"
 
 namespace jaxmpm {
 
-/// The lattice of one body and its places in the order of their ids: first axis slowest, last axis fastest.
+/// The lattice of one body and its places in the order of their ids: first axis slowest, last axis fastest. Or the points that a file has
+/// for it: then there is no lattice.
 struct Seeds {
+  std::optional<PlacedPoints> points;
   Lattice lattice;
   std::vector<LatticeRun> runs;
   std::uint64_t count = 0;  // of places
   std::uint64_t cut = 0;    // places of the shape that lie inside an obstacle, and are left out
+
+  /// Volume of particle p, m³ (in 2D m²).
+  double volume(std::size_t p, const Frame& frame) const;
 };
 
 struct SeededScene {

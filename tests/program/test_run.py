@@ -100,6 +100,17 @@ class Results(ProgramTest):
         for a, b in zip(*ends):
             self.assertTrue(np.array_equal(a, b))
 
+    def test_points_of_a_file_run_as_the_lattice_they_were_taken_from(self):
+        self.run_deck(self.write(small_deck(), "lattice.json"), "lattice")
+        with h5py.File(self.scratch / "lattice" / "results.h5") as index:
+            places = index["frames/000000/water/position"][...]
+        (self.scratch / "points.csv").write_text("x,y,volume\n" + "".join(f"{x:.17g},{y:.17g},{0.0125**2:.17g}\n" for x, y in places))
+        points = [{"name": "water", "material": "water", "shape": {"points": {"file": "points.csv"}}}]
+        deck = self.write(small_deck(bodies=points), "points.json")
+        self.assertIn("576", self.expect(DONE, "check", deck))
+        self.run_deck(deck, "points")
+        self.assertSameResults("lattice", "points")
+
 
 class ExitCodes(ProgramTest):
     def test_usage_is_2(self):

@@ -176,3 +176,46 @@ TEST_CASE("Ten kilometres from the origin the model has the same bits") {
       CHECK((a.distance == c.distance && a.normal == c.normal));
     }
 }
+
+TEST_CASE("Points of a file stand where the file says, with its volumes") {
+  const int dim = GENERATE(2, 3);
+  const deck::Numbers low(std::size_t(dim), 1.0), high(std::size_t(dim), 3.0);
+  const deck::Deck lattice = water_deck(deck::Numbers(std::size_t(dim), 0.0), deck::Numbers(std::size_t(dim), 4.0), 0.5, box(low, high));
+  const Model expected = build_model(lattice);
+  std::string rows = dim == 2 ? "# a comment\nvolume,y,x\n" : "x,y,z,volume\n";
+  for (const Point& place : expected.bodies[0].initial.position) {
+    const std::string volume = std::to_string(std::pow(0.25, dim));
+    const auto metres = [&](int d) { return std::to_string(0.5 * place[std::size_t(d)]); };
+    rows +=
+        dim == 2 ? volume + "," + metres(1) + "," + metres(0) + "\n" : metres(0) + "," + metres(1) + "," + metres(2) + "," + volume + "\n";
+  }
+  const TemporaryFile file("points.csv", rows);
+  deck::Deck deck = lattice;
+  deck.bodies[0].shape.kind = deck::Points{file.path()};
+  const Model model = build_model(deck);
+  CHECK(model.bodies[0].initial.id == expected.bodies[0].initial.id);
+  CHECK(model.bodies[0].initial.position == expected.bodies[0].initial.position);
+  CHECK(model.bodies[0].initial.mass == expected.bodies[0].initial.mass);
+
+  deck.bodies.push_back(lattice.bodies[0]);  // on a lattice, and over some of the points
+  deck.bodies[1].name = "other", deck.bodies[1].shape = box(deck::Numbers(std::size_t(dim), 2.0), high);
+  std::string message;
+  CHECK(problem_pointer(deck, &message) == "/bodies/0/shape/points/file");
+  CHECK_THAT(message, Catch::Contains("inside body 'other'") && Catch::Contains("line "));
+}
+
+TEST_CASE("Points of a file that cannot be particles are refused with their line") {
+  const auto refusal = [](const std::string& rows) {
+    const TemporaryFile file("points.csv", rows);
+    deck::Deck deck = water_deck({0, 0}, {4, 4}, 1, {deck::Points{file.path()}});
+    std::string message;
+    CHECK(problem_pointer(deck, &message) == "/bodies/0/shape/points/file");
+    return message;
+  };
+  CHECK_THAT(refusal("x,y,volume\n1,1,0.25\n1,5,0.25\n"), Catch::Contains("line 3") && Catch::Contains("outside the domain"));
+  CHECK_THAT(refusal("x,y,volume\n1,1,0\n"), Catch::Contains("line 2") && Catch::Contains("above 0"));
+  CHECK_THAT(refusal("x,y,volume\n"), Catch::Contains("no row") || Catch::Contains("no particle"));
+  CHECK_THAT(refusal("x,y,z,volume\n1,1,1,0.25\n"), Catch::Contains("column z"));
+  CHECK_THAT(refusal("x,y\n1,1\n"), Catch::Contains("volume"));
+  CHECK_THAT(refusal("x,y,volume\n1,nan,0.25\n"), Catch::Contains("line 2"));
+}
