@@ -93,16 +93,17 @@ void print_check(const GradientCheck& check) {
 /// A gradient beside that of the same deck in double precision.
 struct SinglePrecision {
   static constexpr double most = 1e-2;  // an optimiser goes the same way with it
+  static constexpr double near = 1e-3;  // of the variables' scales from a minimum the gradient is rounding, and counts as one from there
   double error;                         // length of the difference over that of the gradient, each variable in its scale
   bool good() const { return error <= most; }
 };
 
-SinglePrecision compared(const Unknowns& unknowns, const Evaluation& single, const Evaluation& exact) {
+SinglePrecision compared(const Unknowns& unknowns, const Evaluation& single, const Evaluation& exact, double curvature) {
   const Variables &u = unknowns.space().start, &scale = unknowns.space().scale;
   const Variables found = unknowns.gradient(u, single.gradient), right = unknowns.gradient(u, exact.gradient);
   double off = 0, size = 0;
   for (std::size_t i = 0; i < u.size(); ++i) off += std::pow(scale[i] * (found[i] - right[i]), 2), size += std::pow(scale[i] * right[i], 2);
-  return {size > 0 ? std::sqrt(off / size) : off > 0 ? HUGE_VAL : 0};
+  return {std::sqrt(off) / std::max({std::sqrt(size), SinglePrecision::near * curvature, 1e-300})};
 }
 
 /// Loss and gradient of a deck at the start of its unknowns.
@@ -128,7 +129,7 @@ bool check(const GradientOptions& options, const deck::Deck& deck, Start& start,
   json["check"] = check_json(check);
   if (!options.json) print_check(check);
   if (!in_double) return check.good;
-  const SinglePrecision single = compared(start.unknowns, start.at, in_double->at);
+  const SinglePrecision single = compared(start.unknowns, start.at, in_double->at, check.curvature);
   json["check"]["single_precision"] = {{"relative_error", single.error}, {"verdict", single.good() ? "good" : "bad"}};
   if (!options.json)
     std::cout << fmt::format("(All that in double precision.) Single precision: the gradient is off by {:.1e} of its length: {}\n",

@@ -22,6 +22,13 @@ std::function<bool()> stop_request(double minutes) {
   };
 }
 
+/// The --set of a call, to be typed again.
+std::string assignments_of(const ResultsOptions& options) {
+  std::string text;
+  for (const std::string& one : options.assignments) text += " --set '" + one + "'";
+  return text;
+}
+
 void refuse_to_overwrite(const ResultsOptions& options, const InversionDirectory& directory) {
   if (options.resume || options.overwrite || !directory.holds_inversion()) return;
   throw IoError("'" + directory.path() +
@@ -37,6 +44,7 @@ int invert(const ResultsOptions& options) {
   const InversionDirectory directory(deck.output.directory);
   refuse_to_overwrite(options, directory);
   const Unknowns unknowns(deck);
+  check_bounds(deck, unknowns);
   directory.protect_inputs(deck, unknowns);
   std::vector<RecordedEvaluation> before;
   if (options.resume) before = directory.read(deck, unknowns);
@@ -48,7 +56,7 @@ int invert(const ResultsOptions& options) {
   spdlog::info("{}: {} unknowns, {} threads, results in '{}'", deck.title.empty() ? options.deck : deck.title, unknowns.size(),
                thread_count(), directory.path());
   if (inversion.run()) return static_cast<int>(ExitCode::done);
-  spdlog::info("Stopped. Continue with: jaxmpm invert {} --resume auto (and the same -o and --set)", options.deck);
+  spdlog::info("Stopped. Continue with: jaxmpm invert {} -o '{}'{} --resume auto", options.deck, directory.path(), assignments_of(options));
   return static_cast<int>(ExitCode::stopped);
 }
 

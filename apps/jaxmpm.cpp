@@ -33,6 +33,9 @@ int guarded(const CommandLine& line) {
     spdlog::error(
         "jaxmpm: out of memory. `jaxmpm check DECK` tells what a deck needs; a larger /domain/cell_size or fewer particles need less.");
     return static_cast<int>(ExitCode::io);
+  } catch (const std::exception& error) {
+    spdlog::error("jaxmpm: an error of the program itself: {}. Please report it, with the deck.", error.what());
+    return static_cast<int>(ExitCode::io);
   }
 }
 

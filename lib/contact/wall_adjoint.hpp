@@ -11,7 +11,10 @@ template <class T, int Dim>
 JAXMPM_INLINE T rub_adjoint(const Vector<T, Dim>& t, T loss, Vector<T, Dim>& bar) {
   T square = 0, along = 0;
   for (int c = 0; c < Dim; ++c) square += t[c] * t[c], along += bar[c] * t[c];
-  if (!(square > 0)) return T(0);
+  if (!(square > 0)) {  // it moves with the surface, and stays with it where friction holds
+    if (loss > 0) bar = {};
+    return T(0);
+  }
   const T speed = sqrt(square), scale = T(1) - loss / speed;
   if (!(scale > 0)) {  // it sticks
     for (int c = 0; c < Dim; ++c) bar[c] = T(0);

@@ -239,7 +239,8 @@ class WallUpdate {
   JAXMPM_FUNCTION WallUpdate(const Walls<T, Dim>& walls, const Raw& raw, const Obstacles& obstacles, T cut_off)
       : walls_(walls), raw_(raw), obstacles_(obstacles), cut_off_(cut_off) {}
 
-  /// Velocity after walls and obstacles. `contact` (may be null) receives what happened at an inner node.
+  /// Velocity after walls and obstacles. `contact` (may be null) receives what happened at the node and its images; nothing where the node
+  /// is itself an image.
   JAXMPM_FUNCTION V velocity(const Node& asked, NodeContact<T, Dim>* contact) const {
     const Seat at = seat(asked);
     const NodeSums<T, Dim> sum = folded(at.node, at.twin_face, -1);
@@ -247,7 +248,7 @@ class WallUpdate {
     for (int c = 0; c < Dim; ++c) v[c] = T(0);
     if (!(sum.mass > cut_off_)) return v;
     for (int c = 0; c < Dim; ++c) v[c] = sum.momentum[c] / sum.mass;
-    apply_faces(at, sum.mass, v, contact);
+    apply_faces(at, sum.mass, v, at.node == asked ? contact : nullptr);
     if (inside(at.node)) obstacles_(at.node, sum.mass, v);
     for (int c = 0; c < Dim; ++c) v[c] = at.mirror.sign[c] * v[c] + at.mirror.shift[c];
     return v;
@@ -264,18 +265,17 @@ class WallUpdate {
   JAXMPM_FUNCTION void apply_faces(const Seat& at, T mass, V& v, NodeContact<T, Dim>* contact) const {
     const V free = v;
     hold(at, v);
+    if (contact) report_held(at, v, *contact);
     for (int axis = 0; axis < Dim; ++axis)
       if (at.on_face[std::size_t(axis)] >= 0) apply_face(at.on_face[std::size_t(axis)], at, mass, free, v, contact);
   }
   /// Friction of a face at the node on it, and its report.
   JAXMPM_FUNCTION void apply_face(int face, const Seat& at, T mass, const V& free, V& v, NodeContact<T, Dim>* contact) const {
-    const auto kind = walls_.faces[std::size_t(face)].kind;
-    if (!contact && kind != deck::ContactKind::friction) return;
-    const Sides beside_it = sides(face, at.node, at.twin_face);
-    const T normal = pressing(face, mass, free, beside_it);
-    const V u = wall_velocity(face, at.node);
-    if (kind == deck::ContactKind::friction) rub(face / 2, walls_.friction(face, at.node) * max(T(0), normal) / mass, mass, u, v, contact);
-    if (contact) report(face, face / 2, kind, normal, mass, free, v, u, beside_it, *contact);
+    if (walls_.faces[std::size_t(face)].kind != deck::ContactKind::friction) return;
+    const T normal = pressing(face, mass, free, sides(face, at.node, at.twin_face));
+    const V before = v;
+    rub(face / 2, walls_.friction(face, at.node) * max(T(0), normal) / mass, mass, wall_velocity(face, at.node), v, contact);
+    if (contact) report_rubbed(face, at, before, v, *contact);
   }
 
  private:
@@ -290,16 +290,32 @@ class WallUpdate {
       if (c != axis) v[c] = u[c] + scale * (v[c] - u[c]);
     if (contact) contact->friction_work += T(0.5) * mass * square * (T(1) - scale * scale);
   }
-  JAXMPM_FUNCTION void report(int face, int axis, deck::ContactKind kind, T normal, T mass, const V& free, const V& v, const V& u,
-                              const Sides& s, NodeContact<T, Dim>& contact) const {
-    const T pair = s.mass > cut_off_ ? T(2) * s.twin.mass * s.ghost.mass / s.mass : T(0);
-    auto& impulse = contact.impulse[std::size_t(face)];
-    for (int c = 0; c < Dim; ++c) {
-      if (c == axis) impulse[std::size_t(c)] += inward(face) * normal;
-      else if (kind == deck::ContactKind::friction) impulse[std::size_t(c)] += mass * (v[c] - free[c]);
-      else if (kind == deck::ContactKind::no_slip)
-        impulse[std::size_t(c)] -= mass * (free[c] - u[c]) + T(2) * (reflected(s, c) - pair * u[c]);
+  /// The face whose mirror decides a component of a node's velocity: that across it, else the first that holds it; −1 for none.
+  JAXMPM_FUNCTION int responsible_face(const Seat& at, int c) const {
+    int found = -1;
+    for (int axis = 0; axis < Dim; ++axis) {
+      const int face = at.on_face[std::size_t(axis)] >= 0 ? at.on_face[std::size_t(axis)] : at.twin_face[std::size_t(axis)];
+      if (face < 0 || sign(face, c) > T(0)) continue;
+      if (axis == c) return face;
+      if (found < 0) found = face;
     }
+    return found;
+  }
+  /// What the mirror gives a node and its images: their momentum with the velocity `v`, less that from before.
+  JAXMPM_FUNCTION void report_held(const Seat& at, const V& v, NodeContact<T, Dim>& contact) const {
+    for_each_image(at.node, at.twin_face, -1, [&](const Node& image, const Mirror& m, const Node&) {
+      const NodeSums<T, Dim> sum = raw_(image);
+      for (int c = 0; c < Dim; ++c)
+        if (const int face = responsible_face(at, c); face >= 0)
+          contact.impulse[std::size_t(face)][std::size_t(c)] += sum.mass * (m.sign[c] * v[c] + m.shift[c]) - sum.momentum[c];
+    });
+  }
+  /// What friction of a face gives them.
+  JAXMPM_FUNCTION void report_rubbed(int face, const Seat& at, const V& before, const V& after, NodeContact<T, Dim>& contact) const {
+    for_each_image(at.node, at.twin_face, -1, [&](const Node& image, const Mirror& m, const Node&) {
+      const T mass = raw_(image).mass;
+      for (int c = 0; c < Dim; ++c) contact.impulse[std::size_t(face)][std::size_t(c)] += mass * m.sign[c] * (after[c] - before[c]);
+    });
   }
 };
 

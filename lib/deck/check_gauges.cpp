@@ -1,9 +1,53 @@
+#include <algorithm>
+
 #include "deck/check.hpp"
 
 namespace jaxmpm::deck {
 
 using described::join;
 using described::Place;
+
+namespace {
+
+const char* axis_name(std::size_t axis) { return axis == 0 ? "x" : axis == 1 ? "y" : "z"; }
+
+/// A place that a gauge reads; `axes`: which coordinates it has.
+void check_within(const Deck& deck, const Numbers& at, const std::vector<std::size_t>& axes, const Place& place) {
+  for (std::size_t k = 0; k < at.size() && k < axes.size(); ++k) {
+    const double low = deck.domain.min[axes[k]], high = deck.domain.max[axes[k]];
+    if (at[k] < low || at[k] > high)
+      place.item(k).problem("lies outside of the domain along " + std::string(axis_name(axes[k])) + ", " + described::shown_number(low) +
+                            " to " + described::shown_number(high) + ": nothing would ever be read there");
+  }
+}
+
+void check_places(const Deck& deck, const Place& root) {
+  if (root.reader.troubled("/domain")) return;
+  const std::size_t dim = deck.domain.min.size();
+  std::size_t up = dim - 1;  // along which a height is measured: against gravity, or the last axis
+  for (std::size_t d = 0; d < deck.gravity.size(); ++d)
+    if (deck.gravity[d] != 0 && std::count(deck.gravity.begin(), deck.gravity.end(), 0.0) + 1 == std::ptrdiff_t(dim)) up = d;
+  std::vector<std::size_t> all, plan;
+  for (std::size_t d = 0; d < dim; ++d) {
+    all.push_back(d);
+    if (d != up) plan.push_back(d);
+  }
+  for (const auto& [name, gauge] : deck.gauges) {
+    const Place place = root.key("gauges").key(name);
+    if (const auto* height = std::get_if<HeightGauge>(&gauge); height && place.sound({"kind", "at"}))
+      check_within(deck, height->at, plan, place.key("at"));
+    if (const auto* pressure = std::get_if<PressureGauge>(&gauge); pressure && place.sound({"kind", "at"}))
+      check_within(deck, pressure->at, all, place.key("at"));
+    const auto* mean = std::get_if<RegionMeanGauge>(&gauge);
+    if (!mean || !place.sound({"kind", "min", "max"})) continue;
+    for (std::size_t d = 0; d < dim && d < mean->min.size() && d < mean->max.size(); ++d)
+      if (mean->min[d] >= deck.domain.max[d] || mean->max[d] <= deck.domain.min[d])
+        place.key("min").item(d).problem("the region lies outside of the domain along " + std::string(axis_name(d)) +
+                                         ": nothing would ever be read there");
+  }
+}
+
+}  // namespace
 
 void check_gauges(const Deck& deck, const Place& root) {
   const auto refer = [&root](const std::string& gauge, const std::string& key, const std::string& name,
@@ -15,6 +59,7 @@ void check_gauges(const Deck& deck, const Place& root) {
     if (const auto* front = std::get_if<FrontGauge>(&gauge)) refer(name, "body", front->body, names_in(deck.bodies));
     if (const auto* force = std::get_if<ForceGauge>(&gauge)) refer(name, "obstacle", force->obstacle, names_in(deck.obstacles));
   }
+  check_places(deck, root);
   if (root.given("output") && root.key("output").given("gauge_interval") && !root.given("gauges"))
     root.key("output").problem("gauge_interval", "has no effect without gauges; remove it");
 }

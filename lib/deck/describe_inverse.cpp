@@ -79,7 +79,8 @@ void check_start_value(const Unknown& u, double value, const std::string& what, 
   const std::string shown = what + shown_number(value);
   if (u.transform == Transform::log && !(value > 0)) place.problem("start", shown + " is not above 0, as transform \"log\" needs");
   else if (u.bounds && (value < (*u.bounds)[0] || value > (*u.bounds)[1]))
-    place.problem("start", shown + " is outside of bounds; move one of them");
+    place.problem("start", shown + " is outside of bounds, " + shown_number((*u.bounds)[0]) + " to " + shown_number((*u.bounds)[1]) +
+                               "; move one of them");
   else if (u.transform == Transform::logit && u.bounds && (value == (*u.bounds)[0] || value == (*u.bounds)[1]))
     place.problem("start", shown + " is a bound, which transform \"logit\" reaches only at infinity; start within");
 }

@@ -32,6 +32,18 @@ std::vector<std::string_view> split(std::string_view line) {
   }
 }
 
+/// Column names, out of their quotes.
+std::vector<std::string> header(const std::vector<std::string_view>& words, const std::string& pointer, const std::string& file, int line) {
+  std::vector<std::string> names;
+  for (std::string_view word : words) {
+    if (word.size() >= 2 && word.front() == '"' && word.back() == '"') word = word.substr(1, word.size() - 2);
+    names.emplace_back(word);
+  }
+  if (names.size() == 1 && names[0].find_first_of("; \t") != std::string::npos)
+    bad_file(pointer, file, line, "'" + names[0] + "' is one column; separate columns by commas, and write decimals with a point");
+  return names;
+}
+
 void add_row(Table& table, const std::vector<std::string_view>& words, int line) {
   if (words.size() != table.columns.size())
     bad_file(table.pointer, table.file, line,
@@ -99,13 +111,14 @@ Table read_table(const std::string& path, const std::string& pointer) {
   if (contents.compare(0, 4, "\x89HDF") == 0) bad_file(pointer, path, 0, "this is an HDF5 file; a table is expected, as CSV");
   Table table{path, pointer, {}, {}, {}};
   std::string_view rest = contents;
+  if (rest.substr(0, 3) == "\xEF\xBB\xBF") rest.remove_prefix(3);  // a mark that spreadsheets put in front of UTF-8
   for (int line = 1; !rest.empty(); ++line) {
     const std::size_t end = rest.find('\n');
     const std::string_view text = trim(rest.substr(0, end));
     rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
     if (text.empty() || text.front() == '#') continue;
     const std::vector<std::string_view> words = split(text);
-    if (table.columns.empty()) table.columns.assign(words.begin(), words.end());
+    if (table.columns.empty()) table.columns = header(words, pointer, path, line);
     else add_row(table, words, line);
   }
   if (table.rows.empty()) bad_file(pointer, path, 0, "there are no rows; a table has a header line of column names, then rows of numbers");

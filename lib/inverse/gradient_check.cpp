@@ -20,6 +20,7 @@ constexpr double rounding = 1e-13;           // of the loss and of its change, i
 constexpr double smooth_agreement = 1e-5;    // of differences with the adjoint, relative
 constexpr double branched_agreement = 1e-3;  // the same where the runs to either side cross branches
 constexpr double most_scatter = 1e-2;        // the same at most, where differences of finer and finer steps do not agree with each other
+constexpr double at_minimum = 1e-6;          // parts of the variables' scales
 constexpr std::size_t most_variables = 20;
 
 double nearer(double a, double b, double target) { return std::abs(a - target) <= std::abs(b - target) ? a : b; }
@@ -56,6 +57,7 @@ class Check {
   GradientCheck run(std::size_t directions) {
     for (std::size_t k = 0; k < directions; ++k) result_.directions.push_back(check_direction(direction(k)));
     for (const std::size_t i : chosen_variables()) result_.variables.push_back(check_variable(i));
+    result_.curvature = curvature_;
     judge();
     return std::move(result_);
   }
@@ -102,7 +104,7 @@ class Check {
     DirectionCheck check;
     check.derivative = check.difference = dot(gradient_, d);
     for (std::size_t i = 0; i < d.size(); ++i) check.size += gradient_[i] * d[i] * gradient_[i] * d[i];
-    check.size = std::max(std::sqrt(check.size), 1e-300);
+    check.size = std::sqrt(check.size);
     const std::size_t count = steps_a_decade * decades + 1;
     std::vector<bool> above_rounding;
     double closest = HUGE_VAL;
@@ -116,6 +118,10 @@ class Check {
       above_rounding.push_back(check.remainder.back() > 10 * rounding * (std::abs(loss) + std::abs(change)));
       if (k % steps_a_decade == 0 && k > 0) closest = difference_along(d, step, ahead, closest, check, differences);
     }
+    // At a minimum the derivative is nothing but rounding: it counts as one where it is what a millionth of d away from it would be.
+    const double curvature = 2 * check.remainder[0] / (largest_step * largest_step);
+    check.size = std::max({check.size, at_minimum * curvature, 1e-300});
+    curvature_ = std::max(curvature_, curvature);
     check.scatter = scatter(differences);
     judge_slope(check, above_rounding);
     return check;
@@ -189,7 +195,7 @@ class Check {
     }
     double largest = 0;
     for (std::size_t k = 0; k < u_.size(); ++k) largest = std::max(largest, std::abs(gradient_[k]) * unknowns_.space().scale[k]);
-    const double least = std::max(1e-3 * largest / scale, 1e-300);
+    const double least = std::max({1e-3 * largest / scale, at_minimum * curvature_ / scale, 1e-300});
     check.error = relative_error(check.difference, check.derivative, least);
     check.scatter = scatter(differences) / std::max(std::abs(check.derivative), least);
     return check;
@@ -223,6 +229,7 @@ class Check {
   std::uint64_t seed_;
   Variables u_, gradient_;
   std::vector<double> residuals_;
+  double curvature_ = 0;  // the largest of the loss along the directions
   GradientCheck result_;
 };
 

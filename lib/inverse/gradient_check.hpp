@@ -30,6 +30,7 @@ struct GradientCheck {
   double loss = 0;
   std::vector<DirectionCheck> directions;
   std::vector<VariableCheck> variables;  // all of them, or a seeded choice of 20
+  double curvature = 0;                  // the largest second derivative of the loss along the directions
   std::uint64_t particle_steps = 0, particles_at_kinks = 0;
   bool good = false;
   std::string verdict;

@@ -15,6 +15,7 @@ namespace {
 constexpr std::size_t most_standard_errors = 20;  // unknowns up to which they are given: two runs for each
 constexpr std::size_t most_gauss_newton = 100;    // unknowns: a Jacobian of more would cost more than many gradients
 constexpr std::size_t most_shown = 4;             // numbers in the line of an iteration
+constexpr double at_bound = 1e-9;                 // relative to the number, or 1
 constexpr double widest_spacing = 0.1;            // of differences for standard errors, in parts of the variable's scale
 
 void check_size(const deck::Optimizer& optimizer, std::size_t unknowns) {
@@ -53,10 +54,11 @@ std::optional<Variables> standard_errors(const Linearisation& about, const Varia
 Inversion::Inversion(const deck::Deck& deck, const Unknowns& unknowns, Objective& objective, const InversionDirectory& directory,
                      std::vector<RecordedEvaluation> before)
     : unknowns_(unknowns),
+      objective_(objective),
       directory_(directory),
       optimizer_(deck::inverse_of(deck).optimizer),
       loss_(unknowns, objective, std::move(before), [this] { tell_evaluation(); }),
-      state_{deck, unknowns, loss_, "running", std::nullopt} {
+      state_{deck, unknowns, loss_, "running", std::nullopt, {}} {
   check_size(optimizer_, unknowns.size());
   for (const RecordedEvaluation& one : loss_.evaluations()) iterations_ += one.is_iteration();
 }
@@ -67,13 +69,18 @@ bool Inversion::run() {
   try {
     ended = name_of(minimise(optimizer_, loss_));
     find_standard_errors();
+    compare_with_data();
   } catch (const Stopped&) {
     take("stopped");
     return false;
   } catch (const DeckError& error) {
+    take("failed");
     std::vector<Problem> problems = error.problems;
     for (Problem& problem : problems) problem.message += "; the search led there: give the unknown bounds that keep it out";
     throw DeckError(std::move(problems));
+  } catch (const NumericsError&) {
+    take("failed");
+    throw;
   }
   take(ended);
   tell_result();
@@ -88,7 +95,7 @@ void Inversion::take(const std::string& stopped) {
 void Inversion::tell_evaluation() {
   directory_.write(state_);
   const RecordedEvaluation& last = loss_.evaluations().back();
-  if (last.diverged) return spdlog::info("        a run became unstable; a smaller step is tried");
+  if (last.diverged) return spdlog::info("        a run became unstable; a smaller change of the unknowns is tried");
   if (!last.is_iteration()) return;
   const Variables gradient(last.derivative.begin(), last.derivative.begin() + static_cast<std::ptrdiff_t>(last.u.size()));
   spdlog::info("{:5}  loss {:.6e}  |gradient| {:.3e}{}  {:.3g} + {:.3g} s", ++iterations_, last.loss,
@@ -139,6 +146,44 @@ void Inversion::find_standard_errors() {
         "them, give them priors, or observe more.");
 }
 
+/// One more run, with the best values.
+void Inversion::compare_with_data() {
+  try {
+    objective_.renew_steps(unknowns_.values(loss_.best()->u));
+    objective_.loss(unknowns_.values(loss_.best()->u));
+    state_.comparisons = objective_.comparisons();
+  } catch (const NumericsError&) {
+    spdlog::warn("No comparison with the data: the run with the best values became unstable with its own time steps.");
+  }
+}
+
+/// What the bounds, or errors as wide as they, say of the result.
+void Inversion::tell_bounds(const Variables& best) const {
+  for (std::size_t i = 0; i < unknowns_.size() && unknowns_.size() <= most_standard_errors; ++i) {
+    const auto [lower, upper] = unknowns_.bounds(i);
+    const double value = unknowns_.number(i, best[i]), width = upper - lower;
+    for (const bool above : {false, true})
+      if (std::abs(value - (above ? upper : lower)) <= at_bound * std::max(1.0, std::abs(value)))
+        spdlog::warn("{} is at its {} bound: the data want {} than the bounds allow, and the standard error does not hold.",
+                     unknowns_.label(i), above ? "upper" : "lower", above ? "more" : "less");
+    if (state_.standard_errors && (*state_.standard_errors)[i] > width / 2)
+      spdlog::warn(
+          "{}: its standard error is as wide as its bounds, so the observations hardly tell it; fix it, give it a prior, or observe "
+          "more.",
+          unknowns_.label(i));
+  }
+}
+
+/// How far the best run is from the data.
+void Inversion::tell_fit() const {
+  for (std::size_t o = 0; o < state_.comparisons.size(); ++o) {
+    const Misfit misfit = misfit_of(state_.comparisons[o]);
+    spdlog::info("  observation {}: {} rows, read minus observed {:.3g} rms, {:.3g} on average, {:.3g} at most{}", o,
+                 state_.comparisons[o].time.size(), misfit.rms, misfit.mean, misfit.largest,
+                 misfit.unread > 0 ? fmt::format("; {} rows without material to read", misfit.unread) : "");
+  }
+}
+
 void Inversion::tell_result() const {
   const RecordedEvaluation& best = *loss_.best();
   const char* const ended = state_.stopped == "converged"    ? "Converged"
@@ -155,6 +200,8 @@ void Inversion::tell_result() const {
     const std::string error = state_.standard_errors ? fmt::format(" ± {:.2g}", (*state_.standard_errors)[block.first]) : "";
     for (const std::string& pointer : block.pointers) spdlog::info("  {} = {:.8g}{}", pointer, values.at(pointer).at(0), error);
   }
+  tell_bounds(best.u);
+  tell_fit();
   constexpr double mib = 1 << 20;
   if (loss_.peak_bytes() > 0) spdlog::info("Gradients kept {:.4g} MiB at most.", static_cast<double>(loss_.peak_bytes()) / mib);
 }

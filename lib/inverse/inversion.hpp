@@ -20,10 +20,14 @@ class Inversion {
   void take(const std::string& stopped);
   void tell_evaluation();
   void find_standard_errors();
+  void compare_with_data();
   std::optional<Variables> errors_over_themselves(const Variables& best);
   void tell_result() const;
+  void tell_bounds(const Variables& best) const;
+  void tell_fit() const;
 
   const Unknowns& unknowns_;
+  Objective& objective_;
   const InversionDirectory& directory_;
   deck::Optimizer optimizer_;
   RecordedLoss loss_;

@@ -64,12 +64,41 @@ Json unknowns_json(const InversionState& state) {
   return json;
 }
 
+Json comparisons_json(const std::vector<Comparison>& comparisons) {
+  Json list = Json::array();
+  for (const Comparison& one : comparisons) {
+    const Misfit misfit = misfit_of(one);
+    list.push_back(
+        {{"rows", one.time.size()}, {"unread", misfit.unread}, {"rms", misfit.rms}, {"mean", misfit.mean}, {"largest", misfit.largest}});
+  }
+  return list;
+}
+
+/// The data beside the readings of the best run.
+void write_comparisons(hdf5::Writer& file, const std::vector<Comparison>& comparisons) {
+  for (std::size_t o = 0; o < comparisons.size(); ++o) {
+    const Comparison& one = comparisons[o];
+    const std::string group = "/observations/" + std::to_string(o);
+    const std::size_t rows = one.time.size();
+    file.dataset(group + "/time", {rows}, one.time);
+    file.dataset(group + "/subject", {rows}, std::vector<double>(one.subject.begin(), one.subject.end()));
+    file.dataset(group + "/observed", {rows, one.width}, one.observed);
+    file.dataset(group + "/read", {rows, one.width}, one.read);
+    file.dataset(group + "/sigma", {rows}, one.sigma);
+    if (one.places.empty()) continue;
+    std::vector<double> at;
+    for (const std::size_t subject : one.subject) at.insert(at.end(), one.places[subject].begin(), one.places[subject].end());
+    file.dataset(group + "/at", {rows, one.places[0].size()}, at);
+  }
+}
+
 std::string json_text(const InversionState& state) {
   Json json{{"title", state.deck.title}, {"stopped", state.stopped}, {"iterations", Json::array()}};
   for (const RecordedEvaluation& one : state.loss.evaluations())
     if (one.is_iteration()) json["iterations"].push_back(iteration_json(state.unknowns, one));
   json["unknowns"] = unknowns_json(state);
   json["loss"] = state.loss.best() != nullptr ? Json(state.loss.best()->loss) : Json(nullptr);
+  json["observations"] = comparisons_json(state.comparisons);
   json["evaluations"] = state.loss.evaluations().size();
   json["gradient_peak_bytes"] = state.loss.peak_bytes();
   json["version"] = provenance().version;
@@ -138,11 +167,28 @@ void write_h5(const std::string& path, const InversionState& state, const Model&
   file.text("/deck_resolved", state.deck.resolved);
   write_history(file, state);
   write_fields(file, model);
+  write_comparisons(file, state.comparisons);
   write_evaluations(file, state.loss.evaluations());
   file.finish();
 }
 
 }  // namespace
+
+Misfit misfit_of(const Comparison& comparison) {
+  Misfit misfit;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < comparison.read.size(); ++i) {
+    const double difference = comparison.read[i] - comparison.observed[i];
+    if (std::isnan(difference)) {
+      misfit.unread += i % comparison.width == 0;
+      continue;
+    }
+    misfit.rms += difference * difference, misfit.mean += difference, ++count;
+    misfit.largest = std::max(misfit.largest, std::abs(difference));
+  }
+  if (count > 0) misfit.rms = std::sqrt(misfit.rms / static_cast<double>(count)), misfit.mean /= static_cast<double>(count);
+  return misfit;
+}
 
 bool InversionDirectory::holds_inversion() const { return std::filesystem::exists(json()) || std::filesystem::exists(h5()); }
 

@@ -13,9 +13,17 @@ struct InversionState {
   const deck::Deck& deck;
   const Unknowns& unknowns;
   const RecordedLoss& loss;
-  std::string stopped;                       // "running", "converged", "iterations", "stalled" or "stopped"
+  std::string stopped;                       // "running", "converged", "iterations", "stalled", "stopped" or "failed"
   std::optional<Variables> standard_errors;  // of the numbers, in the order of the variables
+  std::vector<Comparison> comparisons;       // of the data with the run of the best values, once the search has ended
 };
+
+/// Differences read − observed of one observation, over all its numbers that could be read.
+struct Misfit {
+  double rms = 0, mean = 0, largest = 0;  // in the unit of the data
+  std::size_t unread = 0;                 // rows
+};
+Misfit misfit_of(const Comparison& comparison);
 
 class InversionDirectory {
  public:

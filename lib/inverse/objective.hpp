@@ -1,5 +1,6 @@
 #pragma once
 // A run of a deck as a function of its unknowns. The true one is RunObjective; tests have simpler ones.
+#include "inverse/observer.hpp"
 #include "inverse/unknowns.hpp"
 
 namespace jaxmpm {
@@ -23,6 +24,8 @@ class Objective {
   virtual Evaluation gradient(const Values& values) = 0;
   /// Weighted residuals of the last evaluation, whose half sum of squares is its loss.
   virtual const std::vector<double>& residuals() const = 0;
+  /// The data beside the readings of the last evaluation, observation by observation.
+  virtual std::vector<Comparison> comparisons() const { return {}; }
   /// Later evaluations take the steps that a run with these values chooses. Has to be called before the first.
   virtual void renew_steps(const Values& values) = 0;
   /// Whether the steps depend on the values: false with a fixed /time/step.

@@ -8,13 +8,16 @@ namespace {
 class ObservedParticles : public Observation {
  public:
   ObservedParticles(ObservedData data, double weight, const std::string& field, std::size_t body, const Model& model)
-      : Observation(std::move(data), weight), field_(output_field(field)), body_(body), particles_(model.bodies[body].initial.id.size()) {}
+      : Observation(std::move(data), weight), field_(output_field(field)), body_(body), particles_(model.bodies[body].initial.id.size()) {
+    for (std::size_t d = 0; d < std::size_t(model.dim); ++d)
+      period_[d] = field == "position" && model.is_periodic(int(d)) ? model.cells[d] * model.cell_size : 0;
+  }
   FieldSelection needs() const override { return selection({field_.name}); }
   void look(const RowRange& range, const Moment&, const std::vector<BodySnapshot>& bodies, double* differences) override {
     const std::vector<double>& values = bodies[body_].*field_.values;
     for (std::size_t r = range.first; r < range.last; ++r)
       for (std::size_t k = 0; k < width(); ++k)
-        *differences++ = scale(rows()[r]) * (values[rows()[r].subject * width() + k] - rows()[r].value[k]);
+        *differences++ = scale(rows()[r]) * nearest(values[rows()[r].subject * width() + k] - rows()[r].value[k], k);
   }
   void add_gradient(const RowRange& range, const double* by_differences, SnapshotGradient& into) const override {
     for (std::size_t r = range.first; r < range.last; ++r)
@@ -23,8 +26,13 @@ class ObservedParticles : public Observation {
   }
 
  private:
+  /// Across periodic faces the nearest image counts.
+  double nearest(double difference, std::size_t axis) const {
+    return period_[axis] > 0 ? std::remainder(difference, period_[axis]) : difference;
+  }
   const OutputField& field_;
   std::size_t body_, particles_;
+  std::array<double, 3> period_{};  // m, of positions
 };
 
 /// Derivatives by one field of one body, without the zeros: most gauges look at a small part of the material.
@@ -56,8 +64,13 @@ std::vector<SparseField> sparse(const SnapshotGradient& gradient) {
 /// Gauges are differentiated while they look, number by number: the state is not there afterwards, when it is known how much each counts.
 class ObservedGauges : public Observation {
  public:
-  ObservedGauges(ObservedData data, double weight, std::vector<std::unique_ptr<Gauge>> gauges, const Model& model)
-      : Observation(std::move(data), weight), gauges_(std::move(gauges)), bodies_(model.bodies.size()), read_(rows().size(), true) {
+  ObservedGauges(ObservedData data, double weight, std::vector<std::unique_ptr<Gauge>> gauges, const Model& model,
+                 std::vector<deck::Numbers> places)
+      : Observation(std::move(data), weight),
+        gauges_(std::move(gauges)),
+        places_(std::move(places)),
+        bodies_(model.bodies.size()),
+        read_(rows().size(), true) {
     derivatives_.resize(rows().size() * width());
   }
   FieldSelection needs() const override {
@@ -85,6 +98,7 @@ class ObservedGauges : public Observation {
       }
   }
   bool was_read(std::size_t row) const override { return read_[row]; }
+  std::vector<std::vector<double>> places() const override { return places_; }
 
  private:
   /// Of difference k of a row by the state.
@@ -98,6 +112,7 @@ class ObservedGauges : public Observation {
   }
 
   std::vector<std::unique_ptr<Gauge>> gauges_;
+  std::vector<deck::Numbers> places_;
   std::size_t bodies_;
   std::vector<bool> read_;                             // of each row
   std::vector<std::vector<SparseField>> derivatives_;  // of each number of each row
@@ -110,14 +125,29 @@ Observation::Observation(ObservedData data, double weight)
 
 double Observation::scale(const ObservedRow& row) const { return root_weight_ / row.sigma; }
 
+Comparison Observation::compare(const double* differences) const {
+  Comparison found;
+  found.width = width_;
+  for (std::size_t r = 0; r < rows_.size(); ++r) {
+    const ObservedRow& row = rows_[r];
+    found.time.push_back(row.time), found.subject.push_back(row.subject), found.sigma.push_back(row.sigma);
+    for (std::size_t k = 0; k < width_; ++k) {
+      found.observed.push_back(row.value[k]);
+      found.read.push_back(was_read(r) ? row.value[k] + differences[r * width_ + k] / scale(row) : std::nan(""));
+    }
+  }
+  found.places = places();
+  return found;
+}
+
 std::unique_ptr<Observation> observe_particles(ObservedData data, double weight, const std::string& field, std::size_t body,
                                                const Model& model) {
   return std::make_unique<ObservedParticles>(std::move(data), weight, field, body, model);
 }
 
 std::unique_ptr<Observation> observe_gauges(ObservedData data, double weight, std::vector<std::unique_ptr<Gauge>> gauges,
-                                            const Model& model) {
-  return std::make_unique<ObservedGauges>(std::move(data), weight, std::move(gauges), model);
+                                            const Model& model, std::vector<deck::Numbers> places) {
+  return std::make_unique<ObservedGauges>(std::move(data), weight, std::move(gauges), model, std::move(places));
 }
 
 }  // namespace jaxmpm

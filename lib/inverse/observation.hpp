@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "inverse/observed_rows.hpp"
+#include "inverse/observer.hpp"
 #include "observe/gauge.hpp"
 
 namespace jaxmpm {
@@ -27,6 +28,10 @@ class Observation {
   virtual void add_gradient(const RowRange& range, const double* by_differences, SnapshotGradient& into) const = 0;
   /// Whether the last run had material to read at a row.
   virtual bool was_read(std::size_t) const { return true; }
+  /// Horizontal coordinates (m) of the subjects, where they are places.
+  virtual std::vector<std::vector<double>> places() const { return {}; }
+  /// The data beside the readings that gave these differences, width() for each row.
+  Comparison compare(const double* differences) const;
 
  protected:
   /// √w/σ of a row.
@@ -41,8 +46,8 @@ class Observation {
 /// A vector field (position or velocity) of particles of one body.
 std::unique_ptr<Observation> observe_particles(ObservedData data, double weight, const std::string& field, std::size_t body,
                                                const Model& model);
-/// Readings of gauges, one for each subject of the rows.
+/// Readings of gauges, one for each subject of the rows; `places`: where they are, for a profile.
 std::unique_ptr<Observation> observe_gauges(ObservedData data, double weight, std::vector<std::unique_ptr<Gauge>> gauges,
-                                            const Model& model);
+                                            const Model& model, std::vector<deck::Numbers> places = {});
 
 }  // namespace jaxmpm

@@ -45,6 +45,7 @@ class Observations : public Observer {
   void look(std::size_t index, const Moment& now, const std::vector<BodySnapshot>& bodies) override {
     for (const Due& due : due_[index]) observations_[due.observation]->look(due.range, now, bodies, &differences_[due.difference]);
     if (index + 1 < times_.size()) return;
+    plain_ = differences_;
     std::fill(residuals_.begin(), residuals_.end(), 0.0);
     for (std::size_t o = 0; o < observations_.size(); ++o) average(o);
     loss_ = 0;
@@ -53,6 +54,11 @@ class Observations : public Observer {
   }
   double loss() const override { return loss_; }
   const std::vector<double>& residuals() const override { return residuals_; }
+  std::vector<Comparison> comparisons() const override {
+    std::vector<Comparison> all;
+    for (std::size_t o = 0; o < observations_.size(); ++o) all.push_back(observations_[o]->compare(plain_.data() + first_difference_[o]));
+    return all;
+  }
   SnapshotGradient gradient(std::size_t index) const override {
     SnapshotGradient gradient(bodies_);
     for (const Due& due : due_[index]) observations_[due.observation]->add_gradient(due.range, &differences_[due.difference], gradient);
@@ -120,6 +126,7 @@ class Observations : public Observer {
   std::vector<std::vector<Due>> due_;                           // at each time
   std::vector<std::size_t> first_difference_, first_residual_;  // of each observation
   std::vector<double> differences_;                             // after the last look, the loss's derivatives by them
+  std::vector<double> plain_;                                   // the differences of the last run
   std::vector<double> residuals_;
   double loss_ = 0;
   bool warned_ = false;
@@ -153,7 +160,7 @@ struct Prepare {
     ObservedProfile profile = read_profile(observed, place, body);
     std::vector<std::unique_ptr<Gauge>> gauges;
     for (const deck::Numbers& at : profile.at) gauges.push_back(make_deposit_gauge(at, place.model, body, observed.reading));
-    return observe_gauges(ready(std::move(profile.rows), observed), observed.weight, std::move(gauges), place.model);
+    return observe_gauges(ready(std::move(profile.rows), observed), observed.weight, std::move(gauges), place.model, std::move(profile.at));
   }
 };
 

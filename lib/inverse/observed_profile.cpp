@@ -42,6 +42,9 @@ ObservedProfile profile_of_table(const deck::ProfileObservation& observed, const
   const ObservedTable table(observed, place);
   const Model& model = place.model;
   const Point top = domain_max(model);
+  const int up = up_axis(model).axis;
+  if (table.has("time") && table.has("height"))
+    place.bad_file(0, "a profile is that of one time, so the column time would have no effect; remove it, and say when by the key `time`");
   ObservedProfile profile;
   for (std::size_t r = 0; r < table.size(); ++r) {
     deck::Numbers at;
@@ -52,18 +55,25 @@ ObservedProfile profile_of_table(const deck::ProfileObservation& observed, const
                                           number_text(model.domain_min[a]) + " m to " + number_text(top[a]) +
                                           " m; leave the row out, or move it into the deck's coordinates");
     }
+    const double height = table.value(r, "height");
+    if (height < model.domain_min[up] || height > top[up])
+      place.bad_file(table.line(r), number_text(height) + " m is no height within the domain, " + number_text(model.domain_min[up]) +
+                                        " m to " + number_text(top[up]) +
+                                        " m; heights are coordinates in metres: correct the unit, or enlarge the domain");
     if (table.counts(r))
-      add_row(observed, place, at, {observed.time.value_or(place.end), 0, {table.value(r, "height")}, table.sigma(r), table.line(r)},
-              profile);
+      add_row(observed, place, at, {observed.time.value_or(place.end), 0, {height}, table.sigma(r), table.line(r)}, profile);
   }
   return profile;
 }
 
 /// Volume of one place of a body's seed lattice, m³ (m² in 2D), from the deck of its run.
-double lattice_volume(const ResultsReader& results, const std::string& body, int dim) {
+double lattice_volume(const ResultsReader& results, const std::string& body, int dim, const ObservationPlace& place) {
   const auto deck = nlohmann::ordered_json::parse(results.deck());
   for (const auto& one : deck.at("bodies")) {
     if (one.at("name") != body) continue;
+    if (!one.contains("spacing") && !one.contains("particles_per_cell"))
+      place.bad_file(
+          0, "body '" + body + "' was placed by points of a file there, and its frames do not hold their volumes; give the profile as CSV");
     if (one.contains("spacing") && one.at("spacing").is_number()) return std::pow(one.at("spacing").get<double>(), dim);
     return std::pow(deck.at("domain").at("cell_size").get<double>(), dim) / one.at("particles_per_cell").get<double>();
   }
@@ -90,7 +100,7 @@ BodySnapshot particles_of(const ResultsReader& results, std::size_t frame, const
     if (!results.has_field(f, observed.body, "density"))
       place.bad_file(
           0, "the frames hold no density of '" + observed.body + "', which the height needs; run again with it among /output/fields");
-  const double volume = lattice_volume(results, observed.body, place.model.dim);
+  const double volume = lattice_volume(results, observed.body, place.model.dim, place);
   BodySnapshot particles;
   particles.position = results.field(frame, observed.body, "position");
   particles.density = results.field(frame, observed.body, "density");

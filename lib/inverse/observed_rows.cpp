@@ -45,6 +45,9 @@ std::vector<ObservedRow> within_window(std::vector<ObservedRow> rows, const deck
     }
     kept.push_back(std::move(row));
   }
+  if (kept.empty() && first > to + tolerance)
+    place.bad_file(0, "all rows (" + number_text(first) + " s to " + number_text(last) + " s) lie after " + number_text(to) +
+                          " s, where the run or the observation ends; times are in seconds from the start of the run");
   if (kept.empty())
     place.bad_file(0, "no row lies between " + number_text(from) + " s and " + number_text(to) +
                           " s, where the run is observed; the rows are from " + number_text(first) + " s to " + number_text(last) + " s");

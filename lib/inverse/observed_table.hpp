@@ -10,6 +10,7 @@ class ObservedTable {
  public:
   ObservedTable(const deck::Observed& observed, const ObservationPlace& place);
   std::size_t size() const { return table_.rows.size(); }
+  bool has(const std::string& column) const { return table_.has(column); }
   int line(std::size_t row) const { return table_.lines[row]; }
   double value(std::size_t row, const std::string& column) const { return table_.rows[row][table_.column(column)]; }
   std::vector<double> values(std::size_t row, const std::vector<std::string>& columns) const;

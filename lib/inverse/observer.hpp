@@ -5,6 +5,16 @@
 
 namespace jaxmpm {
 
+/// One observation's data beside what the last run read: `width` numbers a row, rows in the order of times and subjects.
+struct Comparison {
+  std::size_t width = 0;
+  std::vector<double> time;                 // s, of each row
+  std::vector<std::size_t> subject;         // of each row: a particle's place in its body, a profile's place; 0 for a gauge
+  std::vector<double> observed, read;       // [row][width]; read is NaN where the run had no material
+  std::vector<double> sigma;                // of each row
+  std::vector<std::vector<double>> places;  // of a profile's subjects: horizontal coordinates, m
+};
+
 class Observer {
  public:
   virtual ~Observer() = default;
@@ -21,6 +31,8 @@ class Observer {
   virtual const std::vector<double>& residuals() const = 0;
   /// ∂loss/∂(what look() saw at times()[index]). Asked for after the run, for each index, in descending order.
   virtual SnapshotGradient gradient(std::size_t index) const = 0;
+  /// Data and readings, observation by observation in deck order, once all times have been looked at; none where there are no data.
+  virtual std::vector<Comparison> comparisons() const { return {}; }
 };
 
 }  // namespace jaxmpm

@@ -81,7 +81,7 @@ void RunObjective::renew_steps(const Values& values) {
   const Model model = build_model(with_values(deck_, values), values);
   const std::size_t before = steps_.dt.size();
   steps_ = record_run(model, *observer_, stop_);
-  if (before > 0) spdlog::info("Time steps renewed: {}, before {}.", steps_.dt.size(), before);
+  if (before > 0 && steps_.dt.size() != before) spdlog::info("Time steps renewed: {}, before {}.", steps_.dt.size(), before);
 }
 
 bool RunObjective::admits(const Values& values) const {

@@ -16,6 +16,7 @@ class RunObjective : public Objective {
   Evaluation loss(const Values& values) override;
   Evaluation gradient(const Values& values) override;
   const std::vector<double>& residuals() const override { return observer_->residuals(); }
+  std::vector<Comparison> comparisons() const override { return observer_->comparisons(); }
   void renew_steps(const Values& values) override;
   bool steps_vary() const override { return !deck_.time.step; }
   bool admits(const Values& values) const override;

@@ -184,6 +184,26 @@ deck::Deck with_values(const deck::Deck& deck, const Values& values) {
   return deck::with_assignments(plain, assignments(values));
 }
 
+void check_bounds(const deck::Deck& deck, const Unknowns& unknowns) {
+  std::vector<Problem> problems;
+  for (const VariableBlock& block : unknowns.blocks()) {
+    if (block.count > 1) continue;
+    const std::array<double, 2> bounds = unknowns.bounds(block.first);
+    for (const std::size_t side : {std::size_t(0), std::size_t(1)}) {
+      if (!std::isfinite(bounds[side])) continue;
+      try {
+        with_values(deck, {{block.pointers.front(), {bounds[side]}}});
+      } catch (const DeckError& error) {
+        for (const Problem& problem : error.problems)
+          if (problem.pointer == block.pointers.front())  // others may be mended by other unknowns
+            problems.push_back({"/inverse/unknowns/" + std::to_string(block.unknown) + "/bounds/" + std::to_string(side), 0,
+                                "reaches to what " + problem.pointer + " may not be: " + problem.message});
+      }
+    }
+  }
+  if (!problems.empty()) throw DeckError(std::move(problems));
+}
+
 std::size_t body_of(const std::string& pointer) { return std::stoul(pointer.substr(std::string("/bodies/").size())); }
 
 Model build_model(const deck::Deck& deck, const Values& values) {

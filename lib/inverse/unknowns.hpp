@@ -1,6 +1,7 @@
 #pragma once
 // The unknowns of a deck as variables that an optimiser moves, and back. A number x of the deck is x = u, x = exp u (log) or
 // x = a + (b − a)/(1 + exp −u) (logit within the bounds a, b) of its variable u.
+#include <array>
 #include <map>
 #include <optional>
 #include <string>
@@ -34,6 +35,10 @@ class Unknowns {
   /// What a variable is called in tables: its pointer, the path where several share it, with the number of the value for a list.
   std::string label(std::size_t variable) const;
 
+  /// The deck's number that a variable stands for.
+  double number(std::size_t variable, double u) const;
+  /// Bounds of that number, −∞ and ∞ where there are none.
+  std::array<double, 2> bounds(std::size_t variable) const { return {law(variable).lower, law(variable).upper}; }
   /// The deck's numbers.
   Values values(const Variables& u) const;
   /// dx/du of each variable: what an error of the variable is multiplied with to be one of the number.
@@ -57,7 +62,6 @@ class Unknowns {
   double prior_residual(std::size_t variable, double u) const;
   void add_block(std::size_t index, std::vector<std::string> pointers, const Variables& start);
   const Law& law(std::size_t variable) const { return laws_[unknown_of_[variable]]; }
-  double number(std::size_t variable, double u) const;
   double slope(std::size_t variable, double u) const;
 
   std::vector<Law> laws_;  // of each of /inverse/unknowns
@@ -71,6 +75,9 @@ class Unknowns {
 
 /// What makes `--set` give a deck these values; velocities of particles, which a deck knows as a file only, are left out.
 std::vector<std::string> assignments(const Values& values);
+
+/// Throws DeckError where an unknown's bounds reach to numbers that its own key does not allow: the search would end there.
+void check_bounds(const deck::Deck& deck, const Unknowns& unknowns);
 
 /// The deck with these values, read and checked anew, and without /inverse, which asks where a search starts and is done with. Throws
 /// DeckError for values that the deck does not allow.

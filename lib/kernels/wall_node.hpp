@@ -111,7 +111,8 @@ JAXMPM_FUNCTION void write_wall_node(const T* quad, const Vector<T, Dim>& v, T m
   }
 }
 
-/// Applies an obstacle to the velocities of one node in place, where no wall is near. `quad`: {m, v}, `change`: FLIP's {–, Δv} or null.
+/// Applies an obstacle to the velocities of one node in place, where no wall is near. `quad`: {m, v}, `change`: a second plane's {–, Δv} or
+/// null.
 template <class T, int Dim>
 JAXMPM_FUNCTION ObstacleContact<T, Dim> push_node(deck::ContactKind kind, T friction, const Vector<T, Dim>& normal, T mass_cut_off, T* quad,
                                                   T* change) {

@@ -2,6 +2,9 @@
 #include "scene/points.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
 
 #include "core/error.hpp"
 #include "fields/files.hpp"
@@ -28,6 +31,19 @@ void check_place(const Point& place, const Frame& frame, const Table& table, int
                frame.text(place) + " lies outside the domain; enlarge the domain or leave the particle out");
 }
 
+/// Two particles in one place would never part.
+void check_apart(const PlacedPoints& placed, const Table& table) {
+  std::vector<std::size_t> order(placed.position.size());
+  std::iota(order.begin(), order.end(), std::size_t(0));
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return placed.position[a] != placed.position[b] ? placed.position[a] < placed.position[b] : a < b;
+  });
+  for (std::size_t k = 1; k < order.size(); ++k)
+    if (placed.position[order[k]] == placed.position[order[k - 1]])
+      bad_file(table.pointer, table.file, placed.lines[order[k]],
+               "a particle in the place of that in line " + std::to_string(placed.lines[order[k - 1]]) + "; leave one out");
+}
+
 }  // namespace
 
 PlacedPoints read_points(const deck::Points& points, const Frame& frame, const std::string& pointer) {
@@ -42,9 +58,15 @@ PlacedPoints read_points(const deck::Points& points, const Frame& frame, const s
     Point place{};
     for (int d = 0; d < frame.dim; ++d) place[d] = frame.coordinate(table.rows[r][columns[d]], d);
     check_place(place, frame, table, table.lines[r]);
+    const double most = std::pow(2 * frame.cell_size, frame.dim);
     if (!(table.rows[r][volume] > 0)) bad_file(table.pointer, table.file, table.lines[r], "a particle's volume must be above 0");
+    if (table.rows[r][volume] > most)
+      bad_file(table.pointer, table.file, table.lines[r],
+               number_text(table.rows[r][volume]) + " is more than a cube of two cells holds, " + number_text(most) +
+                   "; correct the unit, or take a larger cell_size");
     placed.position.push_back(place), placed.volume.push_back(table.rows[r][volume]);
   }
+  check_apart(placed, table);
   return placed;
 }
 

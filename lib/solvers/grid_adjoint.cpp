@@ -115,7 +115,7 @@ template <class T, int Dim>
 void GridAdjoint<T, Dim>::obstacles_adjoint(const Blocks<Dim>& blocks, std::size_t b, const GridConstants<T, Dim>& constants) {
   const Node first = first_node<Dim>(blocks.index[b]);
   const bool at_wall = forward_.contact_blocks().wall_slot()[b] >= 0;
-  const bool flip = kernels_.planes == 2;
+  const bool with_change = kernels_.planes == 2;
   const T* sums = forward_.sums(b);
   T* bars = own_.data() + b * kernels_.own_size;
   std::array<bool, cells> done{};
@@ -129,10 +129,10 @@ void GridAdjoint<T, Dim>::obstacles_adjoint(const Blocks<Dim>& blocks, std::size
     V start = undamped(sum, forward_.pull(constants, b, int(node.node))), bar;
     for (int c = 0; c < Dim; ++c) {
       start[c] -= constants.damped * start[c];
-      bar[c] = by_v[c] + (flip ? by_change[c] : T(0));  // Δv follows v through the contact
+      bar[c] = by_v[c] + (with_change ? by_change[c] : T(0));  // Δv follows v through the contact
     }
     obstacle_chain(b, int(node.node), start, bar, block_[b]);
-    for (int c = 0; c < Dim; ++c) by_v[c] = bar[c] - (flip ? by_change[c] : T(0));
+    for (int c = 0; c < Dim; ++c) by_v[c] = bar[c] - (with_change ? by_change[c] : T(0));
   }
 }
 

@@ -28,7 +28,7 @@ class GridAdjoint {
       : model_(model), kernels_(kernels), adjoint_(adjoint), forward_(forward) {}
 
   /// From derivatives by what the tiles gathered (their arenas) to those by what they scattered: afterwards by_sums() holds {m̄, p̄} (and
-  /// FLIP's {–, impulse}) of every active block. Adds to bars(). `time`: that of the step's beginning, s.
+  /// a second plane's {–, impulse}) of every active block. Adds to bars(). `time`: that of the step's beginning, s.
   void update(const Blocks<Dim>& blocks, const T* arenas, double dt, double time);
   const T* by_sums() const { return own_.data(); }
   const GridBars& bars() const { return total_; }

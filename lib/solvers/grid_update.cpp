@@ -182,9 +182,9 @@ void GridUpdate<T, Dim>::update_wall_block(const Blocks<Dim>& blocks, std::size_
     inside = at.inside;
     NodeContact<T, Dim> contact;
     Vector<T, Dim> v{};
-    if (at.reached) v = walls.velocity(node, recording_ && inside ? &contact : nullptr);
+    if (at.reached) v = walls.velocity(node, recording_ ? &contact : nullptr);
     write_wall_node(raw.quad(int(b), own), v, mass_cut_off_, kernels_.planes, own, out);
-    if (!recording_ || !inside) continue;
+    if (!recording_) continue;
     for (std::size_t f = 0; f < 2 * Dim; ++f) add<decltype(contact.impulse[f]), Dim>(contact_[b].face[f], contact.impulse[f]);
     contact_[b].friction += double(contact.friction_work);
   }

@@ -26,8 +26,8 @@ class GridUpdate {
   void select(const Blocks<Dim>& blocks, const std::vector<char>& awake, bool forces);
   /// The blocks whose arenas update() adds up, ascending.
   const std::vector<std::uint32_t>& summed() const { return summed_; }
-  /// Sums the arenas and turns them into velocities: afterwards grid() holds {–, v} (and FLIP's {–, Δv}) of every block that is updated.
-  /// `time`: that of the step's beginning, s.
+  /// Sums the arenas and turns them into velocities: afterwards grid() holds {–, v} (and a second plane's {–, Δv}) of every block that is
+  /// updated. `time`: that of the step's beginning, s.
   void update(const Blocks<Dim>& blocks, const T* arenas, double dt, double time);
   /// The same from sums that copy_sums() gave, to the same bits.
   void update_again(const Blocks<Dim>& blocks, const T* sums, double dt, double time);
@@ -36,7 +36,7 @@ class GridUpdate {
   void record_contact(bool on) { recording_ = on; }
   /// From now on sums() holds what the last update found at the nodes: the adjoint needs it.
   void keep_sums() { keep_sums_ = true; }
-  /// Sums {m, p} (and FLIP's {–, impulse}) of a block's own nodes before the update.
+  /// Sums {m, p} (and a second plane's {–, impulse}) of a block's own nodes before the update.
   const T* sums(std::size_t b) const {
     const int slot = contact_blocks_.wall_slot()[b];
     return slot >= 0 ? raw_.data() + std::size_t(slot) * kernels_.own_size : sums_.data() + b * kernels_.own_size;

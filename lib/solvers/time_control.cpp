@@ -53,6 +53,7 @@ OutputSchedule::OutputSchedule(const std::string& what, double interval, const T
 
 std::uint64_t OutputSchedule::reached(std::uint64_t step, double time) const {
   if (fixed_ == 0) return static_cast<std::uint64_t>(std::floor(time / interval_ + whole_step_tolerance)) + 1;
+  if (interval_ <= fixed_) return step + 1;  // at every step
   // Number of k ≥ 0 with round(k · interval / dt) ≤ step; the estimate is corrected by the very rounding that places them.
   const auto place = [&](std::uint64_t k) { return std::llround(static_cast<double>(k) * interval_ / fixed_); };
   const auto at = static_cast<long long>(step);

@@ -1,4 +1,4 @@
-"""Pictures of an inversion of jaxmpm: loss and unknowns over the iterations, from inversion.json; beside the truth of a twin experiment also what was found
+"""Pictures of an inversion of jaxmpm: loss and unknowns over the iterations, and the data beside the best run, from inversion.json and .h5; beside the truth of a twin experiment also what was found
 of it."""
 import json
 import pathlib
@@ -41,6 +41,32 @@ def draw(history):
             at.axhspan(low, high, color="k", alpha=0.15)
         at.set_title(name, fontsize=8, loc="left"), at.grid(alpha=0.3)
     axes[-1, 0].set_xlabel("iteration")
+    return figure
+
+
+def comparisons(path):
+    """Data beside the readings of the best run, observation by observation; none while the search goes on."""
+    with h5py.File(path.with_name("inversion.h5"), "r") as file:
+        group = file.get("observations", {})
+        return [{key: one[key][...] for key in one} for _, one in sorted(group.items(), key=lambda item: int(item[0]))]
+
+
+def draw_fit(found):
+    """Each observation: a profile over its first coordinate, a gauge over time, paths of particles by what is left of them over time."""
+    figure, axes = plt.subplots(len(found), 1, figsize=(8, 3 * len(found)), squeeze=False, layout="constrained")
+    for number, (at, one) in enumerate(zip(axes[:, 0], found)):
+        profile, many = "at" in one, len(np.unique(one["subject"])) > 1
+        along = one["at"][:, 0] if profile else one["time"]
+        order = np.argsort(along, kind="stable")
+        for k in range(one["observed"].shape[1]):
+            if many and not profile:
+                at.plot(along, one["read"][:, k] - one["observed"][:, k], ".", ms=2, color=f"C{k}", label=f"read minus observed, {'xyz'[k]}")
+                continue
+            spread = one["sigma"][order] if np.any(one["sigma"] != 1) else None
+            at.errorbar(along[order], one["observed"][order, k], yerr=spread, fmt="o", ms=4, color="k", label="observed" if k == 0 else None)
+            at.plot(along[order], one["read"][order, k], ".-", color=f"C{k}", label="best run")
+        at.set_title(f"observation {number}: rms {np.sqrt(np.nanmean((one['read'] - one['observed']) ** 2)):.3g}", fontsize=9, loc="left")
+        at.set_xlabel("x  m" if profile else "time  s"), at.legend(fontsize=8), at.grid(alpha=0.3)
     return figure
 
 
@@ -109,5 +135,8 @@ def main(path, out, truth=None):
     folder = out or path.parent / "pictures"
     folder.mkdir(parents=True, exist_ok=True)
     save(draw(history), folder / "inversion.png")
+    fit = comparisons(path)
+    if fit:
+        save(draw_fit(fit), folder / "fit.png")
     if truth:
         compare(path, history, Results(truth), folder)

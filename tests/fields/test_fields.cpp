@@ -109,6 +109,10 @@ TEST_CASE("Tables and numbers") {
   CHECK_THROWS_WITH(table.column("z"), Catch::Contains("columns are id, x_m, y"));
   std::ofstream(path) << "x,y\n1\n";
   CHECK_THROWS_WITH(read_table(path, "/a"), Catch::Contains("line 2"));
+  std::ofstream(path) << "\xEF\xBB\xBF\"x\",\"y\"\n1,2\n";  // as spreadsheets write it
+  CHECK(read_table(path, "/a").column("x") == 0);
+  std::ofstream(path) << "x;y\n1;2\n";
+  CHECK_THROWS_WITH(read_table(path, "/a"), Catch::Contains("line 1") && Catch::Contains("separate columns by commas"));
   std::ofstream(path) << "";
   CHECK_THROWS_AS(read_table(path, "/a"), DeckError);
   std::filesystem::remove(path);

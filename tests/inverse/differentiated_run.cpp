@@ -209,6 +209,36 @@ TEST_CASE("gradients by damping and by the numbers of a body force agree with ce
   check_number(&Numbers::k, 1e-4, g.body_force[4]);
 }
 
+TEST_CASE("gradients of a body that rests on what rubs it are those of sticking") {
+  const int dim = GENERATE(2, 3);
+  const auto transfer = GENERATE(deck::Transfer::apic, deck::Transfer::flip);
+  const double along = GENERATE(0.0, 0.3);  // of the wall, and of the body with it
+  CAPTURE(dim, int(transfer), along);
+  Model model = scene(dim, transfer, water(2), elastic(), deck::ContactKind::friction);
+  model.bodies.resize(1), model.obstacles.clear();
+  model.gravity = {0, 0, 0};
+  model.gravity[1] = -9;
+  BodyState& body = model.bodies[0].initial;
+  for (std::size_t p = 0; p < body.id.size(); ++p) {
+    body.position[p][0] += 3, body.velocity[p] = {along, -0.3, 0}, body.compression[p] = 0;
+    if (!body.stress.empty()) body.stress[p] = {};
+  }
+  if (dim == 3)
+    for (Point& place : body.position) place[2] += 2;
+  model.faces[2].coefficient = {0.6}, model.faces[2].to = {1e3}, model.faces[2].velocity = {along, 0, 0};
+  Everything observer({1e-4});  // one step, in which nothing but the floor acts along x
+  const StepSequence steps = record_run(model, observer, {});
+  const ModelGradient g = gradient_of(model, steps, observer, 1);
+  std::size_t lowest = 0;
+  for (std::size_t p = 0; p < body.id.size(); ++p)
+    if (body.position[p][1] < body.position[lowest][1]) lowest = p;
+  check(model,
+        {{"velocity",
+          {[=](Model& m) -> double& { return m.bodies[0].initial.velocity[lowest][0]; }, 1e-5, g.bodies[0].initial.velocity[lowest][0]}},
+         {"wall", {[](Model& m) -> double& { return m.faces[2].velocity[0]; }, 1e-5, g.wall_velocity[2][0]}}},
+        steps, observer);
+}
+
 TEST_CASE("gradients in single precision are those in double precision to within rounding") {
   const int dim = GENERATE(2, 3);
   const auto transfer = GENERATE(deck::Transfer::pic, deck::Transfer::flip, deck::Transfer::apic, deck::Transfer::tpic);

@@ -152,6 +152,21 @@ TEST_CASE("What the deck does not allow ends the search with advice; too many un
   CHECK_THROWS_WITH(invert(network, InversionDirectory(network.folder() + "/out"), objective), Catch::Contains("141"));
 }
 
+TEST_CASE("Bounds that reach to what the deck does not allow are refused before the search") {
+  const auto refusal = [](const std::string& unknown) {
+    const InverseDeck own(R"("unknowns": [ )" + unknown + R"( ], "optimizer": { "method": "gauss_newton" })");
+    try {
+      check_bounds(own.deck, Unknowns(own.deck));
+    } catch (const DeckError& error) {
+      return error.problems.at(0).pointer;
+    }
+    return std::string();
+  };
+  CHECK(refusal(R"({ "path": "/materials/water/density", "bounds": [-1, 2000] })") == "/inverse/unknowns/0/bounds/0");
+  CHECK(refusal(R"({ "path": "/walls/y_min/segments/*/coefficient", "bounds": [-0.5, 1] })") == "/inverse/unknowns/0/bounds/0");
+  CHECK(refusal(R"({ "path": "/materials/water/density", "bounds": [500, 2000] })").empty());
+}
+
 TEST_CASE("Velocities that were found are a file from which a search may start, but not that of its own directory") {
   const InverseDeck own(R"("unknowns": [ { "path": "/bodies/0/velocity/particles" } ], "optimizer": { "method": "adam", "iterations": 3 })",
                         R"({ "particles": { "file": "v.csv" } })");
@@ -160,6 +175,7 @@ TEST_CASE("Velocities that were found are a file from which a search may start, 
   std::ofstream(own.folder() + "/v.csv") << table;
   class Parabola : public GravityObjective {
    public:
+    Evaluation loss(const Values&) override { return {}; }
     Evaluation gradient(const Values& values) override {
       return {0, {{"/bodies/0/velocity/particles", values.at("/bodies/0/velocity/particles")}}};
     }

@@ -64,7 +64,31 @@ TEST_CASE("particles from CSV: residuals with weight, sigma, mask and window, in
     half_square += 0.5 * expected[k] * expected[k];
   }
   CHECK(loss == Approx(half_square).epsilon(1e-14));
+  const std::vector<Comparison> compared = observer->comparisons();
+  REQUIRE(compared.size() == 1);
+  CHECK(compared[0].time == std::vector<double>{0.02, 0.02, 0.08});
+  CHECK(compared[0].subject == std::vector<std::size_t>{7, 9, 7});
+  CHECK(compared[0].observed == std::vector<double>{0.3, 0.1, 0.1, 0.2, 0.2, 0.1});
+  CHECK(compared[0].sigma == std::vector<double>{2, 1, 0.5});
+  CHECK(compared[0].read[4] == Approx(late[14]).epsilon(1e-14));
   check_gradient(*observer, run);
+}
+
+TEST_CASE("positions across periodic faces are compared with the nearest image") {
+  const ObservedScene scene;
+  scene.folder.file("p.csv", "time,id,x,y\n0.02,7,0.98,0.1\n");
+  const deck::Deck deck = scene.deck(R"({"kind": "particles", "body": "pool", "field": "position", "file": "p.csv"})");
+  Model model = build_model(deck);
+  const double width = model.cells[0] * model.cell_size;
+  const auto residual = [&] {
+    const auto observer = make_observer(deck, model);
+    const std::vector<std::vector<BodySnapshot>> run{moved(model, 1)};
+    show(*observer, run);
+    return observer->residuals()[0] - (run[0][0].position[14] - 0.98);
+  };
+  CHECK(residual() == Approx(0).margin(1e-14));
+  model.faces[0].kind = model.faces[1].kind = deck::ContactKind::periodic;
+  CHECK(residual() == Approx(width).epsilon(1e-12));
 }
 
 TEST_CASE("velocities from another run: all, chosen and random particles, in a box") {

@@ -102,8 +102,7 @@ class Invert(InverseTest):
         observations = [{"kind": "particles", "body": "water", "field": "position", "file": "truth_auto/results.h5", "from_time": 0.01}]
         for method in ({"method": "lbfgs", "iterations": 60}, {"method": "adam", "iterations": 100, "decay": 0.96}):
             out = "auto_" + method["method"]
-            said = self.invert(self.deck(time={"end": 0.1}, observations=observations, **method), out)
-            self.assertIn("steps renewed", said)
+            self.invert(self.deck(time={"end": 0.1}, observations=observations, **method), out)
             self.assertFound(out, 0.05)
 
     def test_standard_errors_cover_the_truth_of_noisy_data(self):

@@ -216,6 +216,8 @@ TEST_CASE("Points of a file that cannot be particles are refused with their line
   CHECK_THAT(refusal("x,y,volume\n1,1,0\n"), Catch::Contains("line 2") && Catch::Contains("above 0"));
   CHECK_THAT(refusal("x,y,volume\n"), Catch::Contains("no row") || Catch::Contains("no particle"));
   CHECK_THAT(refusal("x,y,z,volume\n1,1,1,0.25\n"), Catch::Contains("column z"));
+  CHECK_THAT(refusal("x,y,volume\n1,1,0.25\n2,1,0.25\n1,1,0.25\n"), Catch::Contains("line 4") && Catch::Contains("in line 2"));
+  CHECK_THAT(refusal("x,y,volume\n1,1,250\n"), Catch::Contains("line 2") && Catch::Contains("two cells"));
   CHECK_THAT(refusal("x,y\n1,1\n"), Catch::Contains("volume"));
   CHECK_THAT(refusal("x,y,volume\n1,nan,0.25\n"), Catch::Contains("line 2"));
 }

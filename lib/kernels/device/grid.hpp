@@ -148,9 +148,9 @@ struct WallNodes {
     const WallUpdate<T, Dim, WallSums<T, Dim>, decltype(obstacles)> walls(table.walls, raw, obstacles, constants.mass_cut_off);
     NodeContact<T, Dim> contact;
     Vector<T, Dim> v{};
-    if (at.reached) v = walls.velocity(node, recorded ? &contact : nullptr);
+    if (at.reached) v = walls.velocity(node, table.recording() ? &contact : nullptr);
     write_wall_node(raw.quad(int(b), own), v, constants.mass_cut_off, planes, own, table.grid + b * std::size_t(planes * cells * 4));
-    if (!recorded) return;
+    if (!table.recording()) return;
     for (std::size_t f = 0; f < 2 * Dim; ++f) table.record(b, int(f), &contact.impulse[f][0]);
     table.record_friction(b, contact.friction_work);
   }
