@@ -254,7 +254,9 @@ TEST_CASE("gradients in single precision are those in double precision to within
   model.method.precision = deck::Precision::f32;
   const ModelGradient single = gradient_of(model, steps, observer, 4);
 
-  const auto close = [](double a, double b, double size) { return std::abs(a - b) <= 1e-3 * std::max(std::abs(b), size); };
+  // A grain that yields, or slips, within rounding of not doing so takes the other branch: that moves sums over soil by more.
+  const double tolerance = soil ? 5e-3 : 1e-3;
+  const auto close = [=](double a, double b, double size) { return std::abs(a - b) <= tolerance * std::max(std::abs(b), size); };
   double by_walls = 0;  // the largest: sums over nodes of either sign are as uncertain everywhere
   for (const Point& face : exact.wall_velocity)
     for (const double by : face) by_walls = std::max(by_walls, std::abs(by));
@@ -266,7 +268,7 @@ TEST_CASE("gradients in single precision are those in double precision to within
   }
   for (std::size_t b = 0; b < exact.bodies.size(); ++b) {
     for (const auto& [key, value] : exact.bodies[b].material) {
-      INFO(key);
+      INFO(key << ": " << single.bodies[b].material.at(key) << ", " << value);
       CHECK(close(single.bodies[b].material.at(key), value, 0));
     }
     double off = 0, size = 0;

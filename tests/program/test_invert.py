@@ -187,7 +187,7 @@ class Invert(InverseTest):
             for _ in range(60):
                 process = self.start("invert", deck, "-o", out, "--threads", "1", "--resume", "auto")
                 try:
-                    process.communicate(timeout=rng.uniform(0.2, 0.6) * seconds)
+                    process.communicate(timeout=rng.uniform(0.1, 0.4) * seconds)
                 except Exception:
                     process.kill()
                     process.communicate()
