@@ -47,6 +47,25 @@ RigidObstacle make_obstacle(const deck::Obstacle& obstacle, const GeometryPointe
   return made;
 }
 
+/// Whether a node of the grid lies in an obstacle; taken for granted where that would take long to find out.
+bool holds_a_node(const Geometry& shape, const Frame& frame) {
+  constexpr double many = 2e6, on_surface = 1e-9;  // nodes; cells, as contact has it
+  const Bounds bounds = shape.bounds();
+  std::array<int, 3> first{}, last{};
+  double count = 1;
+  for (int d = 0; d < frame.dim; ++d) {
+    first[d] = static_cast<int>(std::ceil(std::max(0.0, bounds.lower[d] - on_surface)));
+    last[d] = static_cast<int>(std::floor(std::min<double>(frame.cells[d], bounds.upper[d] + on_surface)));
+    count *= std::max(0, last[d] - first[d] + 1);
+  }
+  if (count > many) return true;
+  for (int i = first[0]; i <= last[0]; ++i)
+    for (int j = first[1]; j <= last[1]; ++j)
+      for (int k = first[2]; k <= last[2]; ++k)
+        if (shape.signed_distance({double(i), double(j), double(k)}).distance <= on_surface) return true;
+  return false;
+}
+
 const deck::Material& material_of(const deck::Deck& deck, std::size_t body) {
   const auto material = deck.materials.find(deck.bodies[body].material);
   if (material == deck.materials.end())
@@ -86,8 +105,13 @@ std::vector<Body> place_bodies(const deck::Deck& deck, const Frame& frame, const
   return bodies;
 }
 
-std::vector<std::string> cut_notices(const deck::Deck& deck, const std::vector<Seeds>& seeds) {
+std::vector<std::string> notices_of(const deck::Deck& deck, const Frame& frame, const std::vector<GeometryPointer>& obstacles,
+                                    const std::vector<Seeds>& seeds) {
   std::vector<std::string> notices;
+  for (std::size_t i = 0; i < obstacles.size(); ++i)
+    if (!holds_a_node(*obstacles[i], frame))
+      notices.push_back("obstacle '" + deck.obstacles[i].name +
+                        "' holds no node of the grid, so nothing will touch it: it is thinner than a cell or lies outside of the domain");
   for (std::size_t i = 0; i < seeds.size(); ++i)
     if (seeds[i].cut > 0)
       notices.push_back("body '" + deck.bodies[i].name + "': " + std::to_string(seeds[i].cut) + " of its " +
@@ -156,7 +180,7 @@ Model build_model(const deck::Deck& deck) {
   model.body_force = make_body_force(deck, frame, model.bodies);
   model.record_velocity_gradient = asks_for_velocity_gradient(deck);
   model.account_energy = has_energy_gauge(deck);
-  model.notices = cut_notices(deck, scene.seeds);
+  model.notices = notices_of(deck, frame, obstacles, scene.seeds);
   return model;
 }
 

@@ -66,7 +66,7 @@ def draw_fit(found):
             at.errorbar(along[order], one["observed"][order, k], yerr=spread, fmt="o", ms=4, color="k", label="observed" if k == 0 else None)
             at.plot(along[order], one["read"][order, k], ".-", color=f"C{k}", label="best run")
         at.set_title(f"observation {number}: rms {np.sqrt(np.nanmean((one['read'] - one['observed']) ** 2)):.3g}", fontsize=9, loc="left")
-        at.set_xlabel("x  m" if profile else "time  s"), at.legend(fontsize=8), at.grid(alpha=0.3)
+        at.set_ylabel("height  m" if profile else "value"), at.set_xlabel("x  m" if profile else "time  s"), at.legend(fontsize=8), at.grid(alpha=0.3)
     return figure
 
 

@@ -97,3 +97,16 @@ TEST_CASE("Every deck of inputs/ builds and the large ones have the issue's part
     if (expected != counts.end()) CHECK(count == Approx(expected->second).epsilon(1e-3));
   }
 }
+
+TEST_CASE("An obstacle that holds no node of the grid is told") {
+  const auto notices = [](const deck::Shape& shape) {
+    deck::Deck deck = water_deck({0, 0}, {4, 4}, 0.5, box({0, 0}, {1, 1}));
+    deck.obstacles.push_back({"plate", shape});
+    return build_model(deck).notices;
+  };
+  CHECK(notices(box({2, 0}, {2.5, 4})).empty());
+  CHECK(notices(box({2, 0}, {2.1, 4})).empty());  // a face on nodes
+  REQUIRE(notices(box({2.1, 0}, {2.4, 4})).size() == 1);
+  CHECK_THAT(notices(box({2.1, 0}, {2.4, 4}))[0], Catch::Contains("'plate'") && Catch::Contains("no node"));
+  CHECK(notices(box({5, 0}, {6, 4})).size() == 1);
+}
