@@ -177,6 +177,12 @@ class WallUpdate {
     return s;
   }
 
+  static JAXMPM_FUNCTION bool is_image(const Seat& s, const Node& asked) {
+    for (std::size_t d = 0; d < Dim; ++d)
+      if (s.node[d] != asked[d]) return true;
+    return false;
+  }
+
   /// Calls f(image, mirror, through) for a node and those of its images that `folded` adds to it. `through`: the faces that mirror it, per
   /// axis (−1 for none).
   template <class F>
@@ -248,7 +254,7 @@ class WallUpdate {
     for (int c = 0; c < Dim; ++c) v[c] = T(0);
     if (!(sum.mass > cut_off_)) return v;
     for (int c = 0; c < Dim; ++c) v[c] = sum.momentum[c] / sum.mass;
-    apply_faces(at, sum.mass, v, at.node == asked ? contact : nullptr);
+    apply_faces(at, sum.mass, v, is_image(at, asked) ? nullptr : contact);
     if (inside(at.node)) obstacles_(at.node, sum.mass, v);
     for (int c = 0; c < Dim; ++c) v[c] = at.mirror.sign[c] * v[c] + at.mirror.shift[c];
     return v;

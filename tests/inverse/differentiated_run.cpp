@@ -243,7 +243,7 @@ TEST_CASE("gradients in single precision are those in double precision to within
   const int dim = GENERATE(2, 3);
   const auto transfer = GENERATE(deck::Transfer::pic, deck::Transfer::flip, deck::Transfer::apic, deck::Transfer::tpic);
   const auto basis = GENERATE(deck::Basis::linear, deck::Basis::quadratic, deck::Basis::cubic);
-  const bool soil = GENERATE(false, true);
+  const bool soil = (int(transfer) + int(basis)) % 2 == 1;
   CAPTURE(dim, int(transfer), int(basis), soil);
   Model model = soil ? scene(dim, transfer, sand(), rubber(), deck::ContactKind::friction)
                      : driven(scene(dim, transfer, water(2), elastic(), deck::ContactKind::no_slip));
