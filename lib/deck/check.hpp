@@ -5,6 +5,9 @@
 
 namespace jaxmpm::deck {
 
+/// Whether gravity has one component other than zero.
+bool along_an_axis(const Numbers& gravity);
+
 /// Reports to `root.reader`. Parts that could not be read are passed over.
 void check_scene(const Deck& deck, const described::Place& root);
 void check_gauges(const Deck& deck, const described::Place& root);

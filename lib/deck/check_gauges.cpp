@@ -1,5 +1,3 @@
-#include <algorithm>
-
 #include "deck/check.hpp"
 
 namespace jaxmpm::deck {
@@ -9,14 +7,12 @@ using described::Place;
 
 namespace {
 
-const char* axis_name(std::size_t axis) { return axis == 0 ? "x" : axis == 1 ? "y" : "z"; }
-
 /// A place that a gauge reads; `axes`: which coordinates it has.
 void check_within(const Deck& deck, const Numbers& at, const std::vector<std::size_t>& axes, const Place& place) {
   for (std::size_t k = 0; k < at.size() && k < axes.size(); ++k) {
     const double low = deck.domain.min[axes[k]], high = deck.domain.max[axes[k]];
     if (at[k] < low || at[k] > high)
-      place.item(k).problem("lies outside of the domain along " + std::string(axis_name(axes[k])) + ", " + described::shown_number(low) +
+      place.item(k).problem("lies outside of the domain along " + std::string(1, "xyz"[axes[k]]) + ", " + described::shown_number(low) +
                             " to " + described::shown_number(high) + ": nothing would ever be read there");
   }
 }
@@ -26,7 +22,7 @@ void check_places(const Deck& deck, const Place& root) {
   const std::size_t dim = deck.domain.min.size();
   std::size_t up = dim - 1;  // along which a height is measured: against gravity, or the last axis
   for (std::size_t d = 0; d < deck.gravity.size(); ++d)
-    if (deck.gravity[d] != 0 && std::count(deck.gravity.begin(), deck.gravity.end(), 0.0) + 1 == std::ptrdiff_t(dim)) up = d;
+    if (deck.gravity[d] != 0 && along_an_axis(deck.gravity)) up = d;
   std::vector<std::size_t> all, plan;
   for (std::size_t d = 0; d < dim; ++d) {
     all.push_back(d);
@@ -42,7 +38,7 @@ void check_places(const Deck& deck, const Place& root) {
     if (!mean || !place.sound({"kind", "min", "max"})) continue;
     for (std::size_t d = 0; d < dim && d < mean->min.size() && d < mean->max.size(); ++d)
       if (mean->min[d] >= deck.domain.max[d] || mean->max[d] <= deck.domain.min[d])
-        place.key("min").item(d).problem("the region lies outside of the domain along " + std::string(axis_name(d)) +
+        place.key("min").item(d).problem("the region lies outside of the domain along " + std::string(1, "xyz"[d]) +
                                          ": nothing would ever be read there");
   }
 }

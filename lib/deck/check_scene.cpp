@@ -17,6 +17,10 @@ void check_reference(const std::string& name, const std::vector<std::string>& na
   place.problem("there is no " + what + " \"" + name + "\"" + described::suggestion(name, names) + choices);
 }
 
+bool along_an_axis(const Numbers& gravity) {
+  return std::count_if(gravity.begin(), gravity.end(), [](double g) { return g != 0; }) == 1;
+}
+
 namespace {
 
 /// Whether a value is there and was read without a problem.
@@ -49,10 +53,6 @@ void check_materials(const Deck& deck, const Place& root) {
   for (const auto& [name, material] : deck.materials)
     if (all_found && used.count(name) == 0)
       root.reader.problem(join("/materials", name), "no body uses this material; give it to one or remove it");
-}
-
-bool along_an_axis(const Numbers& gravity) {
-  return std::count_if(gravity.begin(), gravity.end(), [](double g) { return g != 0; }) == 1;
 }
 
 void check_initial_stress(const Deck& deck, const Place& root) {

@@ -19,6 +19,8 @@ void check_particles_per_cell(const Body& body, const described::Place& place) {
                                           std::to_string(power(below + 1)));
 }
 
+bool on_lattice(const Body& body) { return !body.by_points(); }
+
 void check_initial_stress_surface(const Body& body, const described::Place& place) {
   if (body.initial_stress.kind == InitialStress::Kind::none && body.initial_stress.surface)
     place.problem("initial_stress", "a surface has no effect on \"none\"; remove it");
@@ -97,8 +99,7 @@ void describe(Description<Body>& d) {
   d.optional("spacing", &Body::spacing)
       .unit("m")
       .above(0)
-      .when(
-          {"shape"}, [](const Body& body) { return !body.by_points(); }, "a shape other than points")
+      .when({"shape"}, on_lattice, "a shape other than points")
       .otherwise("from particles_per_cell")
       .help("Of the lattice, instead of particles_per_cell.");
   d.optional("velocity", &Body::velocity)
@@ -117,8 +118,7 @@ void describe(Description<Body>& d) {
           "or an object with `kind` or `k0`, and `surface`. Gravity must be along an axis or `surface` given.");
   d.optional("jitter", &Body::jitter)
       .word("none")
-      .when(
-          {"shape"}, [](const Body& body) { return !body.by_points(); }, "a shape other than points")
+      .when({"shape"}, on_lattice, "a shape other than points")
       .help("Random displacement of the particles.");
   d.check({"name"}, [](const Body& body, const described::Place& place) { described::check_name(body.name, place.key("name")); });
   d.check({"particles_per_cell"}, check_particles_per_cell);

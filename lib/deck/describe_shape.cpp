@@ -87,8 +87,7 @@ void describe(Description<Points>& d) {
       .items(1)
       .help(
           "CSV with the columns x, y[, z] (m) and volume (m³; in 2D m², of a slice one metre thick), looked for beside the deck. Ids "
-          "follow "
-          "the rows.");
+          "follow the rows.");
 }
 
 void describe(Description<Union>& d) { d.is("union", "All of several shapes.", family); }

@@ -149,8 +149,9 @@ void Inversion::find_standard_errors() {
 /// One more run, with the best values.
 void Inversion::compare_with_data() {
   try {
-    objective_.renew_steps(unknowns_.values(loss_.best()->u));
-    objective_.loss(unknowns_.values(loss_.best()->u));
+    const Values best = unknowns_.values(loss_.best()->u);
+    objective_.renew_steps(best);
+    objective_.loss(best);
     state_.comparisons = objective_.comparisons();
   } catch (const NumericsError&) {
     spdlog::warn("No comparison with the data: the run with the best values became unstable with its own time steps.");

@@ -12,18 +12,6 @@
 namespace jaxmpm {
 namespace {
 
-/// For bodies that lie on a lattice, a cloud of points holds nothing: they are asked whether they hold it.
-class PointsGeometry : public Geometry {
- public:
-  explicit PointsGeometry(const Bounds& bounds) : bounds_(bounds) {}
-  void spans(const Point&, Spans& out) const override { out.clear(); }
-  Bounds bounds() const override { return bounds_; }
-  SignedDistance signed_distance(const Point&) const override { throw std::logic_error("points have no surface"); }
-
- private:
-  Bounds bounds_;
-};
-
 void check_place(const Point& place, const Frame& frame, const Table& table, int line) {
   for (int d = 0; d < frame.dim; ++d)
     if (!(place[d] >= 0 && place[d] <= frame.cells[d]))
@@ -43,8 +31,6 @@ void check_apart(const PlacedPoints& placed, const Table& table) {
       bad_file(table.pointer, table.file, placed.lines[order[k]],
                "a particle in the place of that in line " + std::to_string(placed.lines[order[k - 1]]) + "; leave one out");
 }
-
-}  // namespace
 
 PlacedPoints read_points(const deck::Points& points, const Frame& frame, const std::string& pointer) {
   const Table table = read_table(frame.file(points.file), pointer + "/file");
@@ -70,13 +56,19 @@ PlacedPoints read_points(const deck::Points& points, const Frame& frame, const s
   return placed;
 }
 
+}  // namespace
+
+PointsGeometry::PointsGeometry(PlacedPoints placed, int dim)
+    : placed_(std::move(placed)), bounds_{placed_.position[0], placed_.position[0]} {
+  for (const Point& place : placed_.position)
+    for (int d = 0; d < dim; ++d)
+      bounds_.lower[d] = std::min(bounds_.lower[d], place[d]), bounds_.upper[d] = std::max(bounds_.upper[d], place[d]);
+}
+
+SignedDistance PointsGeometry::signed_distance(const Point&) const { throw std::logic_error("points have no surface"); }
+
 GeometryPointer make_points(const deck::Points& shape, const Frame& frame, const std::string& pointer) {
-  const PlacedPoints placed = read_points(shape, frame, pointer);
-  Bounds bounds{placed.position[0], placed.position[0]};
-  for (const Point& place : placed.position)
-    for (int d = 0; d < frame.dim; ++d)
-      bounds.lower[d] = std::min(bounds.lower[d], place[d]), bounds.upper[d] = std::max(bounds.upper[d], place[d]);
-  return std::make_shared<PointsGeometry>(bounds);
+  return std::make_shared<PointsGeometry>(read_points(shape, frame, pointer), frame.dim);
 }
 
 }  // namespace jaxmpm

@@ -12,8 +12,20 @@ struct PlacedPoints {
   std::string file;
 };
 
-/// Reads the columns x, y[, z] (m) and volume. `pointer`: that of the points. DeckError for places outside the domain and volumes not above
-/// 0, with the line; IoError for an unreadable file.
-PlacedPoints read_points(const deck::Points& points, const Frame& frame, const std::string& pointer);
+/// For bodies that lie on a lattice, a cloud of points holds nothing: they are asked whether they hold it. Made by make_points(), which
+/// reads the columns x, y[, z] (m) and volume of the file; DeckError for places outside the domain or given twice and for volumes that
+/// cannot be, with the line; IoError for an unreadable file.
+class PointsGeometry : public Geometry {
+ public:
+  PointsGeometry(PlacedPoints placed, int dim);
+  void spans(const Point&, Spans& out) const override { out.clear(); }
+  Bounds bounds() const override { return bounds_; }
+  SignedDistance signed_distance(const Point&) const override;
+  const PlacedPoints& placed() const { return placed_; }
+
+ private:
+  PlacedPoints placed_;
+  Bounds bounds_;
+};
 
 }  // namespace jaxmpm

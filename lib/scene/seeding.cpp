@@ -48,7 +48,7 @@ class BodySeeder {
   }
 
   Seeds seed() {
-    if (const auto* points = std::get_if<deck::Points>(&body().shape.kind)) return seed_points(*points);
+    if (const auto* points = dynamic_cast<const PointsGeometry*>(&shape_)) return seed_points(points->placed());
     seeds_.lattice = make_lattice(body(), frame_, body_pointer(index_));
     check_extent();
     const std::int64_t first = seeds_.lattice.first_at_or_above(bounds_.lower[0]),
@@ -62,9 +62,8 @@ class BodySeeder {
   const deck::Body& body() const { return deck_.bodies[index_]; }
 
   /// What stands where obstacles or other bodies are is an error of the file: it is not cut, as its volumes are its own.
-  Seeds seed_points(const deck::Points& points) {
-    const std::string pointer = body_pointer(index_) + "/shape/points";
-    seeds_.points = read_points(points, frame_, pointer);
+  Seeds seed_points(const PlacedPoints& points) {
+    seeds_.points = points;
     seeds_.count = seeds_.points->position.size();
     for (std::size_t p = 0; p < seeds_.count; ++p) {
       const Point& place = seeds_.points->position[p];
@@ -73,7 +72,7 @@ class BodySeeder {
         return contains(other_, place[frame_.up()]);
       };
       const auto fail = [&](const std::string& what) {
-        bad_file(pointer + "/file", seeds_.points->file, seeds_.points->lines[p],
+        bad_file(body_pointer(index_) + "/shape/points/file", seeds_.points->file, seeds_.points->lines[p],
                  frame_.text(place) + " lies inside " + what + "; leave the particle out or move one of the two");
       };
       if (std::any_of(obstacles_.begin(), obstacles_.end(), [&](const Geometry* o) { return inside(*o); })) fail("an obstacle");
