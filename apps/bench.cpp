@@ -52,13 +52,13 @@ class FinalPositions : public Observer {
 
 /// The gradient of the first `dt.size()` steps, within the deck's memory and disk: the second of two, as most of an inversion's, since the
 /// first one also pays for memory that no one has touched before.
-nlohmann::ordered_json bench_gradient(const Model& model, const deck::Deck& deck, std::vector<double> dt, std::size_t blocks,
-                                      double plain_seconds) {
+nlohmann::ordered_json bench_gradient(const Model& model, Backend backend, const deck::Deck& deck, std::vector<double> dt,
+                                      std::size_t blocks, double plain_seconds) {
   double end = 0;
   for (const double step : dt) end += step;
   FinalPositions observer(end);
   const StepSequence steps{dt, {dt.size()}, blocks};
-  SnapshotStack snapshots(deck.output.directory);
+  SnapshotStack snapshots(make_state_memory(backend), deck.output.directory);
   const Room room = room_of(deck.inverse.empty() ? deck::Inverse{} : deck::inverse_of(deck));
   const MemoryPlan plan = plan_gradient(model, steps, room, snapshots);
   RunCost first, cost;
@@ -89,7 +89,6 @@ nlohmann::ordered_json measure(const BenchOptions& options) {
   const deck::Deck deck = deck::read_deck(options.deck, options.assignments);
   Model model = build_model(deck);
   const Backend backend = chosen_backend(options);
-  if (options.gradient && backend != Backend::cpu) throw Error(ExitCode::deck, "gradients are computed on the CPU: give --backend cpu.");
   auto solver = make_solver(model, backend);
   if (!options.gradient)
     for (Body& body : model.bodies) body.initial = {};
@@ -107,7 +106,7 @@ nlohmann::ordered_json measure(const BenchOptions& options) {
   solver.reset();
   dt.insert(dt.end(), measured.begin(), measured.end());
   dt.resize(options.steps);
-  result["gradient"] = bench_gradient(model, deck, std::move(dt), blocks, seconds);
+  result["gradient"] = bench_gradient(model, backend, deck, std::move(dt), blocks, seconds);
   return result;
 }
 

@@ -22,10 +22,6 @@ void add_deck_options(CLI::App& app, DeckOptions& options) {
       ->type_name("POINTER=JSON")
       ->allow_extra_args(false);
   app.add_option("--threads", options.threads, "Host threads; default: all cores")->check(CLI::Range(1, 4096))->type_name("N");
-}
-
-/// For commands that run on any backend; gradients are computed on the CPU.
-void add_backend_option(CLI::App& app, DeckOptions& options) {
   app.add_option("--backend", options.backend, "cpu or cuda; default: cuda where the program was built for it")
       ->check(CLI::IsMember({"cpu", "cuda"}))
       ->type_name("NAME");
@@ -45,7 +41,6 @@ void add_run(CLI::App& app, CommandLine& line) {
   CLI::App* command = app.add_subcommand("run", "Run a deck and write its results");
   auto options = std::make_shared<ResultsOptions>();
   add_deck_options(*command, *options);
-  add_backend_option(*command, *options);
   add_results_options(*command, *options, "Replace results that are there",
                       "Continue: auto (newest checkpoint of the directory, or from the beginning) or a checkpoint file",
                       "Stop with a checkpoint after this many minutes")
@@ -68,7 +63,6 @@ void add_check(CLI::App& app, CommandLine& line) {
   CLI::App* command = app.add_subcommand("check", "Check a deck: all errors, particles, memory, time step, estimated time");
   auto options = std::make_shared<DeckOptions>();
   add_deck_options(*command, *options);
-  add_backend_option(*command, *options);
   command->callback([&line, options] { line.command = [options] { return check(*options); }; });
 }
 
@@ -91,7 +85,6 @@ void add_bench(CLI::App& app, CommandLine& line) {
   CLI::App* command = app.add_subcommand("bench", "Measure the cost of steps and of their gradient, without output");
   auto options = std::make_shared<BenchOptions>();
   add_deck_options(*command, *options);
-  add_backend_option(*command, *options);
   command->add_option("--steps", options->steps, "Steps to measure")
       ->required()
       ->check(CLI::Range(std::uint64_t(1), std::uint64_t(1) << 40))

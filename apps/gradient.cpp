@@ -109,7 +109,8 @@ SinglePrecision compared(const Unknowns& unknowns, const Evaluation& single, con
 /// Loss and gradient of a deck at the start of its unknowns.
 class Start {
  public:
-  explicit Start(const deck::Deck& deck) : unknowns(deck), objective(deck, unknowns.pointers(), [] { return stop_signal() != 0; }) {
+  Start(const deck::Deck& deck, Backend backend)
+      : unknowns(deck), objective(deck, backend, unknowns.pointers(), [] { return stop_signal() != 0; }) {
     const Values values = unknowns.values(unknowns.space().start);
     objective.renew_steps(values);
     at = objective.gradient(values);
@@ -123,7 +124,8 @@ class Start {
 /// gradient compared with that one's.
 bool check(const GradientOptions& options, const deck::Deck& deck, Start& start, Json& json) {
   std::optional<Start> in_double;
-  if (deck.method.precision == deck::Precision::f32) in_double.emplace(deck::with_assignments(deck, {"/method/precision=\"f64\""}));
+  if (deck.method.precision == deck::Precision::f32)
+    in_double.emplace(deck::with_assignments(deck, {"/method/precision=\"f64\""}), chosen_backend(options));
   Start& checked = in_double ? *in_double : start;
   const GradientCheck check = check_gradient(checked.unknowns, checked.objective, options.directions, options.seed);
   json["check"] = check_json(check);
@@ -139,7 +141,7 @@ bool check(const GradientOptions& options, const deck::Deck& deck, Start& start,
 
 int evaluate(const GradientOptions& options) {
   const deck::Deck deck = deck::read_deck(options.deck, options.assignments);
-  Start start(deck);
+  Start start(deck, chosen_backend(options));
   Json json = gradient_json(start.at, start.unknowns);
   if (!options.json) print_gradient(start.at, start.unknowns);
   const bool good = !options.check || check(options, deck, start, json);

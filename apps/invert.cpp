@@ -22,9 +22,10 @@ std::function<bool()> stop_request(double minutes) {
   };
 }
 
-/// The --set of a call, to be typed again.
-std::string assignments_of(const ResultsOptions& options) {
+/// The --set and --backend of a call, to be typed again.
+std::string options_of(const ResultsOptions& options) {
   std::string text;
+  if (options.backend) text += " --backend " + *options.backend;
   for (const std::string& one : options.assignments) text += " --set '" + one + "'";
   return text;
 }
@@ -49,14 +50,14 @@ int invert(const ResultsOptions& options) {
   std::vector<RecordedEvaluation> before;
   if (options.resume) before = directory.read(deck, unknowns);
   if (options.resume && before.empty()) spdlog::info("There is no inversion in '{}': it starts at the beginning.", directory.path());
-  RunObjective objective(deck, unknowns.pointers(), stop_request(options.max_walltime));
+  RunObjective objective(deck, chosen_backend(options), unknowns.pointers(), stop_request(options.max_walltime));
   Inversion inversion(deck, unknowns, objective, directory, std::move(before));
   directory.prepare();
   if (options.overwrite) directory.clear(deck, unknowns);
-  spdlog::info("{}: {} unknowns, {} threads, results in '{}'", deck.title.empty() ? options.deck : deck.title, unknowns.size(),
-               thread_count(), directory.path());
+  spdlog::info("{}: {} unknowns, {}, {} threads, results in '{}'", deck.title.empty() ? options.deck : deck.title, unknowns.size(),
+               objective.backend(), thread_count(), directory.path());
   if (inversion.run()) return static_cast<int>(ExitCode::done);
-  spdlog::info("Stopped. Continue with: jaxmpm invert {} -o '{}'{} --resume auto", options.deck, directory.path(), assignments_of(options));
+  spdlog::info("Stopped. Continue with: jaxmpm invert {} -o '{}'{} --resume auto", options.deck, directory.path(), options_of(options));
   return static_cast<int>(ExitCode::stopped);
 }
 

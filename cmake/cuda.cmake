@@ -32,6 +32,8 @@ function(jaxmpm_cuda_subset)
   if(JAXMPM_CUDA)
     jaxmpm_cuda_sources(kernels ${PROJECT_SOURCE_DIR}/lib/kernels/device/*_quadratic.cu)
     add_library(jaxmpm_cuda_subset OBJECT EXCLUDE_FROM_ALL ${kernels} ${PROJECT_SOURCE_DIR}/lib/solvers/device_step.cu
+                                                           ${PROJECT_SOURCE_DIR}/lib/solvers/device_reversible_step.cu
+                                                           ${PROJECT_SOURCE_DIR}/lib/solvers/state_memory.cpp
                                                            ${PROJECT_SOURCE_DIR}/lib/solvers/solver.cpp)
     target_compile_definitions(jaxmpm_cuda_subset PRIVATE JAXMPM_CUDA_SUBSET)
     target_link_libraries(jaxmpm_cuda_subset PRIVATE jaxmpm_solvers jaxmpm_warnings)

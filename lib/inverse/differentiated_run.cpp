@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "core/error.hpp"
-#include "core/provenance.hpp"
 #include "inverse/checkpoint_schedule.hpp"
 #include "solvers/reversible.hpp"
 #include "spdlog/fmt/fmt.h"
@@ -175,11 +174,13 @@ Split split_snapshots(const ReversibleSolver& solver, std::size_t wanted, const 
 }
 
 /// The adjoint of one step, after which a stepper has all its memory.
-void try_adjoint(ReversibleSolver& solver, double dt) {
-  std::vector<std::byte> numbers(solver.kept_bytes());
-  const std::unique_ptr<KeptState> kept = solver.keep(numbers.data());
+void try_adjoint(ReversibleSolver& solver, Backend backend, double dt) {
+  SnapshotPool pool(make_state_memory(backend));
+  pool.prepare(solver.kept_bytes(), 1);
+  std::byte* numbers = pool.take();
+  const std::unique_ptr<KeptState> kept = solver.keep(numbers);
   solver.start_reverse();
-  solver.step_adjoint(dt, *kept, numbers.data());
+  solver.step_adjoint(dt, *kept, numbers);
 }
 
 /// The next moment of a run that also meets the observer's times.
@@ -192,8 +193,8 @@ Moment next_moment(const TimeControl& control, const Moment& now, double stable,
 
 }  // namespace
 
-StepSequence record_run(const Model& model, Observer& observer, const std::function<bool()>& stop) {
-  const std::unique_ptr<ReversibleSolver> reversible = make_reversible_solver(model);
+StepSequence record_run(const Model& model, Backend backend, Observer& observer, const std::function<bool()>& stop) {
+  const std::unique_ptr<ReversibleSolver> reversible = make_reversible_solver(model, backend);
   Solver& solver = reversible->forward();
   const TimeControl control(model.time);
   const std::vector<double>& times = observer.times();
@@ -216,22 +217,23 @@ StepSequence record_run(const Model& model, Observer& observer, const std::funct
   return steps;
 }
 
-void replay_run(const Model& model, const StepSequence& steps, Observer& observer, const std::function<bool()>& stop) {
-  const std::unique_ptr<ReversibleSolver> solver = make_reversible_solver(model);
+void replay_run(const Model& model, Backend backend, const StepSequence& steps, Observer& observer, const std::function<bool()>& stop) {
+  const std::unique_ptr<ReversibleSolver> solver = make_reversible_solver(model, backend);
   Walk(solver->forward(), steps, observer, stop).advance(0, steps.dt.size());
 }
 
 MemoryPlan plan_gradient(const Model& model, const StepSequence& steps, const Room& room, const SnapshotStack& stack) {
-  const std::unique_ptr<ReversibleSolver> solver = make_reversible_solver(model);
+  const StateMemory& memory = stack.memory();
+  const std::unique_ptr<ReversibleSolver> solver = make_reversible_solver(model, memory.backend());
   solver->expect_blocks(steps.most_blocks);
-  if (!steps.dt.empty()) try_adjoint(*solver, steps.dt[0]);
+  if (!steps.dt.empty()) try_adjoint(*solver, memory.backend(), steps.dt[0]);
   MemoryPlan plan;
   plan.steps = steps.dt.size();
   plan.snapshot_bytes = solver->kept_bytes() + solver->shared_bytes();
   // Besides snapshots: the program as it stands, with this stepper in it and less the stack's memory, and what the observer sees, the
   // gradient, and blocks that the material has yet to reach: less than four states, as measured.
-  const std::size_t resident = resident_bytes();
-  const std::size_t fixed = resident - std::min(stack.memory_bytes(), resident) + 4 * plan.snapshot_bytes;
+  const std::size_t used = memory.used();
+  const std::size_t fixed = used - std::min(stack.memory_bytes(), used) + 4 * plan.snapshot_bytes;
   constexpr std::size_t least = 2;
   const std::size_t wanted = std::max<std::size_t>(plan.steps, 1);
   const Split split = split_snapshots(*solver, wanted, {room.memory - std::min(fixed, room.memory), room.disk});
@@ -251,9 +253,9 @@ MemoryPlan plan_gradient(const Model& model, const StepSequence& steps, const Ro
 
 ModelGradient differentiate_run(const Model& model, const StepSequence& steps, Observer& observer, const MemoryPlan& plan,
                                 SnapshotStack& stack, RunCost& cost, const std::function<bool()>& stop) {
-  const std::unique_ptr<ReversibleSolver> solver = make_reversible_solver(model);
+  const std::unique_ptr<ReversibleSolver> solver = make_reversible_solver(model, stack.memory().backend());
   ModelGradient gradient = Reversal(*solver, steps, observer, plan, stack, stop).run(cost);
-  cost.measured_peak_bytes = peak_memory_bytes();
+  cost.measured_peak_bytes = stack.memory().most_used();
   cost.written_bytes = stack.file().written_bytes(), cost.read_bytes = stack.file().read_bytes();
   return gradient;
 }

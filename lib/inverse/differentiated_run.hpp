@@ -36,13 +36,13 @@ struct RunCost {
 
 /// Runs a model forward with steps chosen as `jaxmpm run` does, showing it to the observer; returns the steps taken.
 /// Throws NumericsError when the run becomes unstable; `stop` (may be empty) is asked between steps and ends it with Stopped.
-StepSequence record_run(const Model& model, Observer& observer, const std::function<bool()>& stop);
+StepSequence record_run(const Model& model, Backend backend, Observer& observer, const std::function<bool()>& stop);
 
 /// The same with given steps: exactly these, whatever the state would choose.
-void replay_run(const Model& model, const StepSequence& steps, Observer& observer, const std::function<bool()>& stop);
+void replay_run(const Model& model, Backend backend, const StepSequence& steps, Observer& observer, const std::function<bool()>& stop);
 
 /// Plan of a gradient within `room`, of whose memory `stack` may hold some already: snapshots go to the disk when memory has no room for
-/// all. Throws Error (exit 2) when memory is too small for any plan.
+/// all. It is the memory of the stack's backend, which runs the steps. Throws Error (exit 2) when memory is too small for any plan.
 MemoryPlan plan_gradient(const Model& model, const StepSequence& steps, const Room& room, const SnapshotStack& stack);
 
 /// Loss (through the observer) and its gradient by the model. Branches (contact, return mapping, clamps) are differentiated as taken, dt is

@@ -58,7 +58,7 @@ Inversion::Inversion(const deck::Deck& deck, const Unknowns& unknowns, Objective
       directory_(directory),
       optimizer_(deck::inverse_of(deck).optimizer),
       loss_(unknowns, objective, std::move(before), [this] { tell_evaluation(); }),
-      state_{deck, unknowns, loss_, "running", std::nullopt, {}} {
+      state_{deck, unknowns, loss_, objective.backend(), "running", std::nullopt, {}} {
   check_size(optimizer_, unknowns.size());
   for (const RecordedEvaluation& one : loss_.evaluations()) iterations_ += one.is_iteration();
 }

@@ -101,6 +101,7 @@ std::string json_text(const InversionState& state) {
   json["observations"] = comparisons_json(state.comparisons);
   json["evaluations"] = state.loss.evaluations().size();
   json["gradient_peak_bytes"] = state.loss.peak_bytes();
+  json["backend"] = state.backend;
   json["version"] = provenance().version;
   json["git_commit"] = provenance().git_commit;
   return json.dump(2) + "\n";

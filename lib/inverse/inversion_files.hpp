@@ -13,6 +13,7 @@ struct InversionState {
   const deck::Deck& deck;
   const Unknowns& unknowns;
   const RecordedLoss& loss;
+  std::string backend;
   std::string stopped;                       // "running", "converged", "iterations", "stalled", "stopped" or "failed"
   std::optional<Variables> standard_errors;  // of the numbers, in the order of the variables
   std::vector<Comparison> comparisons;       // of the data with the run of the best values, once the search has ended

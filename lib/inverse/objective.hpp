@@ -32,6 +32,8 @@ class Objective {
   virtual bool steps_vary() const = 0;
   /// Whether the deck allows the values.
   virtual bool admits(const Values& values) const = 0;
+  /// Name of what it runs on.
+  virtual std::string backend() const { return "cpu"; }
 };
 
 }  // namespace jaxmpm

@@ -8,6 +8,7 @@
 #include "core/error.hpp"
 #include "inverse/observations.hpp"
 #include "inverse/scene_gradient.hpp"
+#include "io/summary.hpp"
 
 namespace jaxmpm {
 namespace {
@@ -34,12 +35,13 @@ constexpr double mib = 1 << 20;
 
 Room room_of(const deck::Inverse& inverse) { return {bytes_of(inverse.memory), inverse.disk == "none" ? 0 : bytes_of(inverse.disk)}; }
 
-RunObjective::RunObjective(const deck::Deck& deck, std::vector<std::string> pointers, std::function<bool()> stop)
+RunObjective::RunObjective(const deck::Deck& deck, Backend backend, std::vector<std::string> pointers, std::function<bool()> stop)
     : deck_(with_values(deck, {})),
+      backend_(backend),
       pointers_(std::move(pointers)),
       room_(room_of(deck::inverse_of(deck))),
       stop_(std::move(stop)),
-      snapshots_(deck.output.directory) {
+      snapshots_(make_state_memory(backend), deck.output.directory) {
   const Model model = build_model(deck);
   for (const std::string& notice : model.notices) spdlog::info("Note: {}", notice);
   observer_ = make_observer(deck, model);
@@ -48,7 +50,7 @@ RunObjective::RunObjective(const deck::Deck& deck, std::vector<std::string> poin
 Evaluation RunObjective::loss(const Values& values) {
   const Model model = build_model(with_values(deck_, values), values);
   const Watch watch;
-  replay_run(model, steps_, *observer_, stop_);
+  replay_run(model, backend_, steps_, *observer_, stop_);
   Evaluation found;
   found.loss = observer_->loss();
   found.forward_seconds = watch.seconds();
@@ -80,7 +82,7 @@ void RunObjective::renew_steps(const Values& values) {
   if (!steps_vary() && !steps_.dt.empty()) return;
   const Model model = build_model(with_values(deck_, values), values);
   const std::size_t before = steps_.dt.size();
-  steps_ = record_run(model, *observer_, stop_);
+  steps_ = record_run(model, backend_, *observer_, stop_);
   if (before > 0 && steps_.dt.size() != before) spdlog::info("Time steps renewed: {}, before {}.", steps_.dt.size(), before);
 }
 
@@ -92,6 +94,8 @@ bool RunObjective::admits(const Values& values) const {
     return false;
   }
 }
+
+std::string RunObjective::backend() const { return backend_name(backend_); }
 
 void RunObjective::tell_plan(const MemoryPlan& plan) const {
   const std::string disk =

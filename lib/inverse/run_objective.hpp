@@ -11,7 +11,7 @@ class RunObjective : public Objective {
  public:
   /// Of a deck with /inverse; `pointers` are those that gradients are asked for. Reads the observed files. `stop` is asked between steps
   /// and ends an evaluation with Stopped. Throws DeckError and IoError.
-  RunObjective(const deck::Deck& deck, std::vector<std::string> pointers, std::function<bool()> stop);
+  RunObjective(const deck::Deck& deck, Backend backend, std::vector<std::string> pointers, std::function<bool()> stop);
 
   Evaluation loss(const Values& values) override;
   Evaluation gradient(const Values& values) override;
@@ -20,12 +20,14 @@ class RunObjective : public Objective {
   void renew_steps(const Values& values) override;
   bool steps_vary() const override { return !deck_.time.step; }
   bool admits(const Values& values) const override;
+  std::string backend() const override;
 
  private:
   void tell_plan(const MemoryPlan& plan) const;
   void tell_disk(const RunCost& cost) const;
 
   deck::Deck deck_;  // without /inverse
+  Backend backend_;
   std::vector<std::string> pointers_;
   Room room_;  // of the schedule
   std::function<bool()> stop_;

@@ -1,21 +1,17 @@
 #include "inverse/snapshot_pool.hpp"
 
 #include <algorithm>
-#include <new>
 #include <stdexcept>
 
 namespace jaxmpm {
 namespace {
 
-constexpr std::align_val_t cache_line{64};
+constexpr std::size_t line = 64;  // of cache
 constexpr std::size_t chunk_bytes = std::size_t(32) << 20;
 
 }  // namespace
 
-void SnapshotPool::Release::operator()(std::byte* chunk) const { ::operator delete(chunk, cache_line); }
-
 void SnapshotPool::prepare(std::size_t bytes, std::size_t most) {
-  constexpr std::size_t line = std::size_t(cache_line);
   bytes = (bytes + line - 1) / line * line;
   if (bytes != block_bytes_) chunks_.clear(), free_.clear(), blocks_ = 0;
   block_bytes_ = bytes, most_ = most;
@@ -31,7 +27,7 @@ std::byte* SnapshotPool::take() {
 void SnapshotPool::add_chunk() {
   if (blocks_ >= most_) throw std::logic_error("more snapshots than planned");
   const std::size_t count = std::min(std::max<std::size_t>(chunk_bytes / block_bytes_, 1), most_ - blocks_);
-  chunks_.emplace_back(static_cast<std::byte*>(::operator new(count* block_bytes_, cache_line)));
+  chunks_.emplace_back(memory_->take(count * block_bytes_), Release{memory_.get()});
   for (std::size_t k = count; k-- > 0;) free_.push_back(chunks_.back().get() + k * block_bytes_);
   blocks_ += count;
 }

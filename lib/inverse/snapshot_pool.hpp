@@ -5,10 +5,13 @@
 #include <memory>
 #include <vector>
 
+#include "solvers/reversible.hpp"
+
 namespace jaxmpm {
 
 class SnapshotPool {
  public:
+  explicit SnapshotPool(std::shared_ptr<StateMemory> memory) : memory_(std::move(memory)) {}
   /// Blocks of `bytes` from now on, at most `most` of them at once. None may be in use. Keeps the memory of before when the size is the
   /// same.
   void prepare(std::size_t bytes, std::size_t most);
@@ -16,13 +19,16 @@ class SnapshotPool {
   void give_back(std::byte* block) { free_.push_back(block); }
   /// Bytes taken from the system.
   std::size_t bytes() const { return blocks_ * block_bytes_; }
+  const StateMemory& memory() const { return *memory_; }
 
  private:
   struct Release {
-    void operator()(std::byte* chunk) const;
+    StateMemory* memory;
+    void operator()(std::byte* chunk) const { memory->give_back(chunk); }
   };
   void add_chunk();
 
+  std::shared_ptr<StateMemory> memory_;
   std::size_t block_bytes_ = 0, most_ = 0, blocks_ = 0;
   std::vector<std::unique_ptr<std::byte, Release>> chunks_;
   std::vector<std::byte*> free_;

@@ -8,6 +8,7 @@ void SnapshotStack::prepare(std::size_t bytes, std::size_t in_memory, std::size_
   while (!blocks_.empty()) pop();
   pool_.prepare(bytes, in_memory);
   file_.prepare(bytes, on_disk);
+  passing_.resize(on_disk > 0 ? bytes : 0);
   in_memory_ = in_memory;
 }
 
@@ -20,7 +21,8 @@ std::byte* SnapshotStack::push() {
 void SnapshotStack::spill() {
   const std::size_t oldest = first_in_memory_;
   if (oldest == in_file_) {
-    file_.write(oldest, blocks_[oldest]);
+    memory().copy_out(passing_.data(), blocks_[oldest], passing_.size());
+    file_.write(oldest, passing_.data());
     ++in_file_;
   }
   pool_.give_back(blocks_[oldest]);
@@ -31,7 +33,8 @@ const std::byte* SnapshotStack::top() {
   if (first_in_memory_ == size()) {  // the newest is on the disk, so memory is empty
     blocks_.back() = pool_.take();
     --first_in_memory_;
-    file_.read(first_in_memory_, blocks_.back());
+    file_.read(first_in_memory_, passing_.data());
+    memory().copy_in(blocks_.back(), passing_.data(), passing_.size());
   }
   return blocks_.back();
 }

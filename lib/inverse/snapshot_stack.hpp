@@ -10,8 +10,9 @@ namespace jaxmpm {
 /// file.
 class SnapshotStack {
  public:
-  /// `directory`: of the file (SnapshotFile).
-  explicit SnapshotStack(std::string directory = {}) : file_(std::move(directory)) {}
+  /// `memory`: of the steppers whose states it keeps; `directory`: of the file (SnapshotFile).
+  explicit SnapshotStack(std::shared_ptr<StateMemory> memory, std::string directory = {})
+      : pool_(std::move(memory)), file_(std::move(directory)) {}
   /// Empties the stack. Snapshots are of `bytes` from now on, at most `in_memory` ≥ 1 of them in memory and `on_disk` others.
   /// Throws IoError where the disk has no room for these.
   void prepare(std::size_t bytes, std::size_t in_memory, std::size_t on_disk);
@@ -25,6 +26,7 @@ class SnapshotStack {
   void pop();
   /// Bytes of memory taken from the system.
   std::size_t memory_bytes() const { return pool_.bytes(); }
+  const StateMemory& memory() const { return pool_.memory(); }
   const SnapshotFile& file() const { return file_; }
 
  private:
@@ -33,6 +35,7 @@ class SnapshotStack {
   SnapshotPool pool_;
   SnapshotFile file_;
   std::size_t in_memory_ = 0;
+  std::vector<std::byte> passing_;   // a snapshot on its way to or from the disk
   std::vector<std::byte*> blocks_;   // oldest first
   std::size_t first_in_memory_ = 0;  // blocks_ before it are on the disk alone
   std::size_t in_file_ = 0;          // the file holds the first so many, each at its number

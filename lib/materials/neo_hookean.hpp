@@ -24,12 +24,30 @@ JAXMPM_INLINE Real volume_change(const Matrix<Real, Dim>& A) {
   return trace(A) + volume_change_beyond_trace(A);
 }
 
+/// Adjoint of volume_change(): adds `by` times the cofactors of I + A.
+template <class Real, int Dim>
+JAXMPM_INLINE void volume_change_adjoint(const Matrix<Real, Dim>& A, Real by, Matrix<Real, Dim>& by_A) {
+  Matrix<Real, Dim> F = A;
+  for (int k = 0; k < Dim; ++k) F(k, k) = Real(1) + F(k, k);
+  for (int i = 0; i < Dim; ++i)
+    for (int j = 0; j < Dim; ++j) {
+      Real cofactor;
+      if constexpr (Dim == 2) {
+        cofactor = i == j ? F(1 - i, 1 - j) : -F(1 - i, 1 - j);
+      } else {
+        const int k = (i + 1) % 3, l = (i + 2) % 3, m = (j + 1) % 3, n = (j + 2) % 3;
+        cofactor = F(k, m) * F(l, n) - F(k, n) * F(l, m);
+      }
+      by_A(i, j) = by_A(i, j) + by * cofactor;
+    }
+}
+
 template <class Scalar>
 struct NeoHookean {
   Scalar density;      // ρ0, kg/m³
   Scalar lame, shear;  // λ and μ, Pa
 
-  static constexpr bool by_hand = false;
+  static constexpr bool by_hand = true;
 
   template <class Number = DeckNumber>
   static NeoHookean from(const deck::NeoHookean& m, const Number& number = {}) {
@@ -65,6 +83,24 @@ struct NeoHookean {
   }
 
   template <class Real, int Dim>
+  JAXMPM_INLINE auto update_adjoint(const Matrix<Real, Dim>& H, Real, Real compression, const Real* history, Real& by_compression,
+                                    Real* by_history, Matrix<Real, Dim>& by_H, Real*) const {
+    const Matrix<Real, Dim> A = read<Real, Dim>(history), by = read<Real, Dim>(by_history);
+    for (int i = 0; i < Dim; ++i)
+      for (int k = 0; k < Dim; ++k) {
+        by_H(i, k) = by(i, k);
+        Real sum = by(i, k);
+        for (int j = 0; j < Dim; ++j) {
+          by_H(i, k) = by_H(i, k) + by(i, j) * A(k, j);
+          sum = sum + H(j, i) * by(j, k);
+        }
+        by_history[i * Dim + k] = sum;
+      }
+    volume_change_adjoint(H, compress_adjoint(compression, volume_change(H), by_compression), by_H);
+    return at_kink(Real(0), Real(1));  // nothing branches
+  }
+
+  template <class Real, int Dim>
   JAXMPM_INLINE Symmetric<Real, Dim> stress(Real, const Real* history) const {
     const Matrix<Real, Dim> A = read<Real, Dim>(history);
     const Real growth = volume_change(A);
@@ -74,6 +110,30 @@ struct NeoHookean {
     for (int k = 0; k < sigma.size; ++k) sigma[k] = per_volume * Real(shear) * sigma[k];
     for (int k = 0; k < 3; ++k) sigma[k] = sigma[k] + per_volume * spherical;
     return sigma;
+  }
+
+  template <class Real, int Dim>
+  JAXMPM_INLINE void stress_adjoint(Real, const Real* history, const Symmetric<Real, Dim>& by_sigma, Real&, Real* by_history,
+                                    Real* by_constants) const {
+    const Matrix<Real, Dim> A = read<Real, Dim>(history);
+    const Symmetric<Real, Dim> b = stretch<Real, Dim>(A);
+    const Real growth = volume_change(A), log_J = log1p(growth), per_volume = Real(1) / (Real(1) + growth);
+    const Real mu(shear), lambda(lame), by_pressure = trace(by_sigma);
+    Real by_stretch = Real(0);
+    for (int k = 0; k < b.size; ++k) by_stretch = by_stretch + by_sigma[k] * b[k];
+    by_constants[1] = by_constants[1] + per_volume * log_J * by_pressure;
+    by_constants[2] = by_constants[2] + per_volume * by_stretch;
+    Matrix<Real, Dim> by_A;
+    for (int k = 0; k < Dim * Dim; ++k) by_A.a[k] = Real(0);
+    const Real by_per_volume = mu * by_stretch + lambda * log_J * by_pressure;
+    volume_change_adjoint(A, per_volume * per_volume * (lambda * by_pressure - by_per_volume), by_A);
+    for (int i = 0; i < Dim; ++i)  // adjoint of stretch()
+      for (int j = 0; j <= i; ++j) {
+        const Real by = per_volume * mu * by_sigma[Symmetric<Real, Dim>::index(i, j)];
+        by_A(i, j) = by_A(i, j) + by, by_A(j, i) = by_A(j, i) + by;
+        for (int k = 0; k < Dim; ++k) by_A(i, k) = by_A(i, k) + by * A(j, k), by_A(j, k) = by_A(j, k) + by * A(i, k);
+      }
+    for (int k = 0; k < Dim * Dim; ++k) by_history[k] = by_history[k] + by_A.a[k];
   }
 
   /// A pressure wave along a principal stretch Λ has ρ0 c² = μ (Λ² + 1) + λ (1 − ln J); Λ² is bounded by 1 + |b − I|.

@@ -68,14 +68,15 @@ void DeviceGrid<T, Dim, Space>::mirror_obstacles(std::size_t blocks) {
 
 template <class T, int Dim, class Space>
 void DeviceGrid<T, Dim, Space>::update(const Space& space, double dt) {
-  const auto constants = grid_constants<T, Dim>(model_, mass_cut_off_, dt);
+  if (keep_sums_) grow<T>(sums_, "jaxmpm::grid", tables_.blocks * scheme_.own_size);
+  tables_.sums = keep_sums_ ? sums_.data() : nullptr;
   if (forces_) {
     grow<double>(contact_, "jaxmpm::contact", tables_.blocks * tables_.contact_size);
     Kokkos::deep_copy(space, contact_, 0.0);
   }
   tables_.contact = forces_ ? contact_.data() : nullptr;
   tables_.friction = model_.account_energy ? friction_.data() : nullptr;
-  scheme_.grid(space, tables_, constants);
+  scheme_.grid(space, tables_, constants(dt));
 }
 
 template <class T, int Dim, class Space>

@@ -9,15 +9,9 @@ template <class T, int Dim>
 std::unique_ptr<Solver> make(const Model& model) {
   using Stepper = DeviceStep<T, Dim, Kokkos::Cuda>;
   const deck::Method& method = model.method;
-  switch (method.basis) {
-    case deck::Basis::linear:
-      return std::make_unique<Stepper>(model, device_scheme<T, Dim, 2, Kokkos::Cuda>(method.transfer, method.gradient));
-    case deck::Basis::quadratic:
-      return std::make_unique<Stepper>(model, device_scheme<T, Dim, 3, Kokkos::Cuda>(method.transfer, method.gradient));
-    case deck::Basis::cubic:
-      break;
-  }
-  return std::make_unique<Stepper>(model, device_scheme<T, Dim, 4, Kokkos::Cuda>(method.transfer, method.gradient));
+  return with_spline(method.basis, [&](auto nodes) -> std::unique_ptr<Solver> {
+    return std::make_unique<Stepper>(model, device_scheme<T, Dim, nodes, Kokkos::Cuda>(method.transfer, method.gradient));
+  });
 }
 
 }  // namespace

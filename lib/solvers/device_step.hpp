@@ -20,6 +20,10 @@ class DeviceGrid {
   /// Sums the arenas and turns them into velocities, in the space's queue.
   void update(const Space& space, double dt);
 
+  /// From now on tables().sums holds what the last update found at the nodes: the adjoint needs it.
+  void keep_sums() { keep_sums_ = true; }
+  GridConstants<T, Dim> constants(double dt) const { return grid_constants<T, Dim>(model_, mass_cut_off_, dt); }
+  std::size_t segments() const { return contact_blocks_.table().coefficient.size(); }
   const GridTables<T, Dim>& tables() const { return tables_; }
   T* arenas() const { return arenas_.data(); }
   const Tile* tiles() const { return tiles_.data(); }
@@ -40,7 +44,7 @@ class DeviceGrid {
   ContactBlocks<T, Dim> contact_blocks_;
   T mass_cut_off_;
   GridTables<T, Dim> tables_{};
-  bool forces_ = false;
+  bool forces_ = false, keep_sums_ = false;
 
   DeviceArray<Tile, Space> tiles_;
   DeviceArray<Index<Dim>, Space> index_;
@@ -49,7 +53,7 @@ class DeviceGrid {
   DeviceArray<ObstacleNode<T, Dim>, Space> obstacle_nodes_;
   DeviceArray<ObstacleLaw<T>, Space> obstacle_laws_;
   DeviceArray<double, Space> wall_ends_, contact_, friction_, contact_total_;
-  DeviceArray<T, Space> wall_coefficients_, arenas_, raw_, grid_;
+  DeviceArray<T, Space> wall_coefficients_, arenas_, raw_, grid_, sums_;
 };
 
 /// Wall time of the phases. A device runs behind its queue, so a phase is only timed where the queue is drained after it: every 32nd step;
@@ -71,7 +75,7 @@ class PhaseTimer {
 };
 
 template <class T, int Dim, class Space>
-class DeviceStep final : public Solver {
+class DeviceStep : public Solver {
  public:
   DeviceStep(const Model& model, const DeviceScheme<T, Dim, Space>& scheme);
 
@@ -89,7 +93,7 @@ class DeviceStep final : public Solver {
   PhaseSeconds phase_seconds() const override { return timer_.seconds(sort_seconds_); }
   std::size_t active_blocks() const override { return blocks_.count(); }
 
- private:
+ protected:
   /// Particles may move this far, in cells, before they are sorted again: nearly as far as the arenas' halo reaches, as sorting costs more
   /// than order here.
   static constexpr double sort_after = 0.9;
@@ -100,6 +104,7 @@ class DeviceStep final : public Solver {
     std::size_t first_tile = 0, tiles = 0;
   };
 
+  bool sort_is_due() const { return numbers_.drift > sort_after; }
   void sort_if_due();
   void sort();
   bool sort_on_device(std::vector<Tile>& tiles, std::vector<std::int64_t>& tile_key);
@@ -131,6 +136,7 @@ class DeviceStep final : public Solver {
   StepNumbers numbers_;
   bool record_forces_ = false, contact_known_ = false;  // contact_known_: that of the last step is in grid_
   double sort_seconds_ = 0;
+  std::uint64_t sorts_ = 0;
   PhaseTimer timer_;
 };
 

@@ -39,7 +39,7 @@ DeviceStep<T, Dim, Space>::DeviceStep(const Model& model, const DeviceScheme<T, 
 
 template <class T, int Dim, class Space>
 void DeviceStep<T, Dim, Space>::sort_if_due() {
-  if (!(numbers_.drift > sort_after)) return;
+  if (!sort_is_due()) return;
   const auto start = std::chrono::steady_clock::now();
   sort();
   sort_seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -54,6 +54,7 @@ void DeviceStep<T, Dim, Space>::sort() {
   blocks_.tiles = std::move(tiles), tile_key_ = std::move(tile_key);
   rebuild();
   numbers_.drift = 0;
+  ++sorts_;
 }
 
 /// False where a particle has moved further than a block since the last sort.
@@ -206,6 +207,7 @@ void DeviceStep<T, Dim, Space>::restore(const std::vector<RawArray>& arrays) {
   for (std::size_t b = 0; b < bodies_.size(); ++b) bodies_[b].particles.load(bodies[b]);
   contact_known_ = false;
   rebuild();
+  ++sorts_;
 }
 
 }  // namespace jaxmpm

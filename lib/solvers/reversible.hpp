@@ -44,7 +44,25 @@ class ReversibleSolver {
   virtual std::uint64_t at_kinks() const = 0;
 };
 
-/// Builds a reversible stepper of a model on the host. Throws DeckError where the method has no adjoint (material at rest).
-std::unique_ptr<ReversibleSolver> make_reversible_solver(const Model& model);
+/// Builds a reversible stepper of a model. Throws as make_solver() does, and DeckError where the method has no adjoint (material at rest).
+std::unique_ptr<ReversibleSolver> make_reversible_solver(const Model& model, Backend backend);
+
+/// The memory that a backend's steppers compute in, where the numbers of kept states lie.
+class StateMemory {
+ public:
+  virtual ~StateMemory() = default;
+  virtual Backend backend() const = 0;
+  /// A block that begins at a cache line. Throws where there is not so much.
+  virtual std::byte* take(std::size_t bytes) = 0;
+  virtual void give_back(std::byte* block) noexcept = 0;
+  /// Copies to and from the host's memory, after everything that steppers have queued.
+  virtual void copy_out(std::byte* host, const std::byte* block, std::size_t bytes) const = 0;
+  virtual void copy_in(std::byte* block, const std::byte* host, std::size_t bytes) const = 0;
+  /// Bytes in use now and, as far as it has been seen, at most.
+  virtual std::size_t used() const = 0;
+  virtual std::size_t most_used() const = 0;
+};
+
+std::shared_ptr<StateMemory> make_state_memory(Backend backend);
 
 }  // namespace jaxmpm

@@ -4,7 +4,7 @@
 #include <cstring>
 
 #include "core/parallel_host.hpp"
-#include "materials/constants.hpp"
+#include "solvers/particle_gradient.hpp"
 
 namespace jaxmpm {
 namespace {
@@ -200,16 +200,8 @@ void ReversibleStep<T, Dim>::start_reverse() {
   grid_adjoint_.clear_bars();
   material_totals_.assign(this->bodies_.size(), {});
   flip_fraction_ = 0;
-  bars_.assign(this->bodies_.size(), {});
-  for (std::size_t b = 0; b < bars_.size(); ++b) {
-    const Particles<T, Dim>& p = this->bodies_[b];
-    const std::size_t n = p.count();
-    Particles<T, Dim>& bar = bars_[b];
-    const auto zeros = [&](std::size_t arrays) { return std::vector<Array<T>>(arrays, Array<T>(n, T(0))); };
-    bar.position.assign(Dim, Array<double>(n, 0.0)), bar.velocity = zeros(Dim), bar.affine = zeros(p.affine.size());
-    bar.history = zeros(p.history.size()), bar.dilation = zeros(p.dilation.size());
-    bar.mass.assign(n, T(0)), bar.compression.assign(n, T(0));
-  }
+  bars_.clear();
+  for (const Particles<T, Dim>& p : this->bodies_) bars_.push_back(zero_bars(p));
 }
 
 template <class T, int Dim>
@@ -261,33 +253,10 @@ ModelGradient ReversibleStep<T, Dim>::gradient() const {
   const GridBars& grid = grid_adjoint_.bars();
   g.gravity = grid.gravity, g.damping = grid.damping, g.body_force = grid.body_force, g.wall_velocity = grid.wall_velocity;
   g.obstacle_coefficient = grid.obstacle, g.flip_fraction = flip_fraction_;
-  std::size_t segment = 0;
-  for (std::size_t f = 0; f < 2 * Dim; ++f)
-    for (std::size_t k = 0; k < this->model_.faces[f].coefficient.size(); ++k) g.coefficient[f].push_back(grid.segment[segment++]);
-  for (std::size_t b = 0; b < bars_.size(); ++b) g.bodies.push_back(body_gradient(b));
+  g.coefficient = by_face(this->model_, grid.segment.data());
+  for (std::size_t b = 0; b < bars_.size(); ++b)
+    g.bodies.push_back(body_gradient(this->model_.bodies[b], *material_adjoints_[b], this->bodies_[b], bars_[b], material_totals_[b]));
   return g;
-}
-
-template <class T, int Dim>
-BodyGradient ReversibleStep<T, Dim>::body_gradient(std::size_t b) const {
-  const Particles<T, Dim>& p = this->bodies_[b];
-  const Particles<T, Dim>& bar = bars_[b];
-  const std::size_t n = p.count();
-  BodyGradient by;
-  MaterialReport constants = material_totals_[b];
-  std::vector<double> by_compression(n), by_stress(6 * n);
-  material_adjoints_[b]->start(p, bar, by_compression.data(), by_stress.data(), constants);
-  by.material = by_material_numbers(this->model_.bodies[b].material, constants.constants.data());
-  by.initial.velocity.resize(n), by.initial.mass.resize(n), by.initial.compression.resize(n), by.initial.stress.resize(n);
-  const std::uint32_t first = p.first_id();
-  for (std::size_t a = 0; a < n; ++a) {
-    const std::size_t i = p.id[a] - first;
-    for (std::size_t d = 0; d < Dim; ++d) by.initial.velocity[i][d] = double(bar.velocity[d][a]);
-    by.initial.mass[i] = double(bar.mass[a]);
-    by.initial.compression[i] = by_compression[a];
-    for (std::size_t k = 0; k < 6; ++k) by.initial.stress[i][k] = by_stress[6 * a + k];
-  }
-  return by;
 }
 
 template class ReversibleStep<float, 2>;

@@ -52,7 +52,6 @@ class ReversibleStep final : public ExplicitStep<T, Dim>, public ReversibleSolve
   void add_reports();
   void add_body_gradient(std::size_t b, const BodySnapshot& by);
   void add_stress_gradient(std::size_t b, const BodySnapshot& by);
-  BodyGradient body_gradient(std::size_t b) const;
 
   AdjointKernels<T, Dim> adjoint_;
   std::vector<std::unique_ptr<MaterialAdjoint<T, Dim>>> material_adjoints_;

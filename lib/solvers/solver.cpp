@@ -39,8 +39,10 @@ bool has_backend(Backend) { return true; }
 bool has_backend(Backend backend) { return backend == Backend::cpu; }
 #endif
 
-std::unique_ptr<Solver> make_solver(const Model& model, Backend backend) {
-  check_extent(model);
+namespace {
+
+/// Throws where a backend cannot run a model, or is not there.
+void check_backend(const Model& model, Backend backend) {
   if (backend == Backend::cuda && model.method.rest)
     throw DeckError("/method/rest", "a GPU moves every particle at every step; give --backend cpu, or remove it");
   if (backend == Backend::cuda && model.method.volume_averaging > 0)
@@ -51,16 +53,27 @@ std::unique_ptr<Solver> make_solver(const Model& model, Backend backend) {
     if (model.is_periodic(d)) throw DeckError("/walls", "periodic faces are for the CPU alone; give --backend cpu, or other faces");
   if (!has_backend(backend))
     throw Error(ExitCode::deck, "this program was built without CUDA; use --backend cpu, or build with scripts/build-cuda");
+}
+
+}  // namespace
+
+std::unique_ptr<Solver> make_solver(const Model& model, Backend backend) {
+  check_extent(model);
+  check_backend(model, backend);
 #if defined(KOKKOS_ENABLE_CUDA)
   if (backend == Backend::cuda) return make_cuda_solver(model);
 #endif
   return model.method.precision == deck::Precision::f32 ? make_host_solver<float>(model) : make_host_solver<double>(model);
 }
 
-std::unique_ptr<ReversibleSolver> make_reversible_solver(const Model& model) {
+std::unique_ptr<ReversibleSolver> make_reversible_solver(const Model& model, Backend backend) {
   check_extent(model);
   if (model.method.rest)
     throw DeckError("/method/rest", "a gradient follows every particle through every step; remove it to compute gradients");
+  check_backend(model, backend);
+#if defined(KOKKOS_ENABLE_CUDA)
+  if (backend == Backend::cuda) return make_cuda_reversible_solver(model);
+#endif
   return model.method.precision == deck::Precision::f32 ? make_reversible<float>(model) : make_reversible<double>(model);
 }
 

@@ -72,7 +72,7 @@ ModelGradient gradient_of(const Model& model, const StepSequence& steps, Observe
   MemoryPlan plan;
   plan.steps = steps.dt.size(), plan.snapshots = snapshots, plan.on_disk = on_disk;
   RunCost cost;
-  SnapshotStack stack;
+  SnapshotStack stack(make_state_memory(Backend::cpu));
   return differentiate_run(model, steps, observer, plan, stack, cost, {});
 }
 
@@ -86,7 +86,7 @@ Difference difference(const Model& model, const StepSequence& steps, Everything&
   for (const int side : {0, 1}) {
     Model other = model;
     number(other) += side == 0 ? -change : change;
-    replay_run(other, steps, observer, {});
+    replay_run(other, Backend::cpu, steps, observer, {});
     loss[side] = observer.loss();
   }
   return {(loss[1] - loss[0]) / (2 * change), 2e-15 * observer.size() / change};
@@ -136,7 +136,7 @@ TEST_CASE("gradients of a run agree with central differences") {
   const auto kind = GENERATE(deck::ContactKind::friction, deck::ContactKind::no_slip);
   const Model model = scene(dim, transfer, water(2), elastic(), kind);
   Everything observer({0, 4e-4, 1e-3});
-  const StepSequence steps = record_run(model, observer, {});
+  const StepSequence steps = record_run(model, Backend::cpu, observer, {});
   CHECK(steps.dt.size() == 10);
   const ModelGradient g = gradient_of(model, steps, observer, 4);
   CAPTURE(dim, int(transfer), int(kind));
@@ -156,7 +156,7 @@ TEST_CASE("gradients by a granular material's numbers agree with central differe
   loam.cohesion = 200;
   const Model model = scene(2, deck::Transfer::apic, loam, rubber(), deck::ContactKind::friction);
   Everything observer({1e-3});
-  const StepSequence steps = record_run(model, observer, {});
+  const StepSequence steps = record_run(model, Backend::cpu, observer, {});
   const ModelGradient g = gradient_of(model, steps, observer, 3);
   auto all = numbers(model, g);
   all["friction angle"] = material_number(0, &deck::DruckerPrager::friction_angle, 1e-6, "friction_angle", g);
@@ -187,7 +187,7 @@ TEST_CASE("gradients by damping and by the numbers of a body force agree with ce
   const Numbers start{300, 4, 5, 20};
   const Model model = model_with(start);
   Everything observer({4e-4, 1e-3});
-  const StepSequence steps = record_run(model, observer, {});
+  const StepSequence steps = record_run(model, Backend::cpu, observer, {});
   const ModelGradient g = gradient_of(model, steps, observer, 4);
   REQUIRE(model.body_force->parameters() == std::vector<std::string>{"a", "k"});
   REQUIRE(g.body_force.size() == 5);
@@ -196,7 +196,7 @@ TEST_CASE("gradients by damping and by the numbers of a body force agree with ce
     for (const int side : {0, 1}) {
       Numbers other = start;
       other.*number += side == 0 ? -change : change;
-      replay_run(model_with(other), steps, observer, {});
+      replay_run(model_with(other), Backend::cpu, steps, observer, {});
       loss[side] = observer.loss();
     }
     const double measured = (loss[1] - loss[0]) / (2 * change);
@@ -227,7 +227,7 @@ TEST_CASE("gradients of a body that rests on what rubs it are those of sticking"
     for (Point& place : body.position) place[2] += 2;
   model.faces[2].coefficient = {0.6}, model.faces[2].to = {1e3}, model.faces[2].velocity = {along, 0, 0};
   Everything observer({1e-4});  // one step, in which nothing but the floor acts along x
-  const StepSequence steps = record_run(model, observer, {});
+  const StepSequence steps = record_run(model, Backend::cpu, observer, {});
   const ModelGradient g = gradient_of(model, steps, observer, 1);
   std::size_t lowest = 0;
   for (std::size_t p = 0; p < body.id.size(); ++p)
@@ -249,7 +249,7 @@ TEST_CASE("gradients in single precision are those in double precision to within
                      : driven(scene(dim, transfer, water(2), elastic(), deck::ContactKind::no_slip));
   model.method.basis = basis, model.method.volume_averaging = soil ? 0.5 : 0;
   Everything observer({4e-4, 2e-3});
-  const StepSequence steps = record_run(model, observer, {});
+  const StepSequence steps = record_run(model, Backend::cpu, observer, {});
   const ModelGradient exact = gradient_of(model, steps, observer, 4);
   model.method.precision = deck::Precision::f32;
   const ModelGradient single = gradient_of(model, steps, observer, 4);
@@ -296,7 +296,7 @@ TEST_CASE("gradients by the velocities of walls agree with central differences")
   }
   model = driven(model);
   Everything observer({4e-4, 1e-3});
-  const StepSequence steps = record_run(model, observer, {});
+  const StepSequence steps = record_run(model, Backend::cpu, observer, {});
   const ModelGradient g = gradient_of(model, steps, observer, 4);
   std::map<std::string, Number> all;
   for (std::size_t f = 0; f < 2 * std::size_t(dim); ++f)
@@ -316,7 +316,7 @@ TEST_CASE("gradients by a body force that is not finite where no material is") {
   model.body_force = std::make_shared<const BodyForce>(std::vector<deck::Formula>{"a*sqrt(" + std::to_string(end) + " - x)", 0.0}, 2,
                                                        std::map<std::string, double>{{"a", 5}});
   Everything observer({1e-3});
-  const StepSequence steps = record_run(model, observer, {});
+  const StepSequence steps = record_run(model, Backend::cpu, observer, {});
   const ModelGradient g = gradient_of(model, steps, observer, 4);
   REQUIRE(g.body_force.size() == 4);
   CHECK(std::isfinite(g.body_force[3]));
@@ -328,7 +328,7 @@ TEST_CASE("gradients of a run that sorts its particles on the way agree with cen
   model.obstacles.resize(0);
   model.time.step = 2e-4;
   Everything observer({6e-3, 1.4e-2});  // 70 steps; particles cross more than half a cell
-  const StepSequence steps = record_run(model, observer, {});
+  const StepSequence steps = record_run(model, Backend::cpu, observer, {});
   const ModelGradient g = gradient_of(model, steps, observer, 9);
   check(model,
         {{"gravity", {[](Model& m) -> double& { return m.gravity[1]; }, 1e-3, g.gravity[1]}},
@@ -344,7 +344,7 @@ TEST_CASE("a gradient has the same bits whatever memory and disk it is given, an
   model.time.step = {};
   model.time.cfl = 0.5;
   Everything observer({0.01, 0.02, 0.03});
-  const StepSequence steps = record_run(model, observer, {});
+  const StepSequence steps = record_run(model, Backend::cpu, observer, {});
   REQUIRE(steps.dt.size() > 30);
   const ModelGradient whole = gradient_of(model, steps, observer, steps.dt.size());
   struct Case {

@@ -10,7 +10,7 @@
 using namespace jaxmpm;
 
 TEST_CASE("a pool of snapshots hands out blocks of their own and uses those given back again") {
-  SnapshotPool pool;
+  SnapshotPool pool(make_state_memory(Backend::cpu));
   pool.prepare(1000, 3);
   std::set<std::byte*> blocks;
   for (int k = 0; k < 3; ++k) {

@@ -31,7 +31,7 @@ TEST_CASE("a stack of snapshots gives back what was pushed, whichever of them ar
   for (const std::size_t in_memory : {1, 2, 5})
     for (const std::size_t on_disk : {0, 1, 7}) {
       INFO(in_memory << " in memory, " << on_disk << " on disk");
-      SnapshotStack stack;
+      SnapshotStack stack(make_state_memory(Backend::cpu));
       stack.prepare(bytes, in_memory, on_disk);
       std::vector<std::byte> marks;
       for (unsigned k = 0; k < 2000; ++k) {
@@ -46,7 +46,7 @@ TEST_CASE("a stack of snapshots gives back what was pushed, whichever of them ar
 }
 
 TEST_CASE("what was fetched from the disk is not written again") {
-  SnapshotStack stack;
+  SnapshotStack stack(make_state_memory(Backend::cpu));
   stack.prepare(bytes, 2, 3);
   for (int k = 0; k < 5; ++k) push(stack, std::byte(k));
   CHECK(stack.file().written_bytes() == 3 * bytes);
@@ -65,7 +65,7 @@ TEST_CASE("what was fetched from the disk is not written again") {
 }
 
 TEST_CASE("what was fetched from the disk and changed is written again") {
-  SnapshotStack stack;
+  SnapshotStack stack(make_state_memory(Backend::cpu));
   stack.prepare(bytes, 1, 2);
   for (int k = 0; k < 3; ++k) push(stack, std::byte(k));
   stack.pop();
@@ -78,7 +78,7 @@ TEST_CASE("what was fetched from the disk and changed is written again") {
 
 TEST_CASE("the file of snapshots has no name") {
   const testing::Scratch scratch;
-  SnapshotStack stack(scratch / "");
+  SnapshotStack stack(make_state_memory(Backend::cpu), scratch / "");
   stack.prepare(bytes, 1, 2);
   for (int k = 0; k < 3; ++k) push(stack, std::byte(k));
   CHECK(stack.file().written_bytes() == 2 * bytes);
@@ -88,7 +88,7 @@ TEST_CASE("the file of snapshots has no name") {
 TEST_CASE("a disk without room for the snapshots is found out before the run") {
   const testing::Scratch scratch;
   const testing::FullDisk full(2500);
-  SnapshotStack stack(scratch / "");
+  SnapshotStack stack(make_state_memory(Backend::cpu), scratch / "");
   std::string said;
   try {
     stack.prepare(bytes, 1, 3);

@@ -47,9 +47,9 @@ TEST_CASE("the loss of a deck's observations by numbers of the deck") {
   const deck::Deck deck = deck::read_deck(folder.file("deck.json", slumping));
   const Model model = build_model(deck);
   const auto observer = make_observer(deck, model);
-  const StepSequence steps = record_run(model, *observer, {});
+  const StepSequence steps = record_run(model, Backend::cpu, *observer, {});
   CHECK(steps.dt.size() == 200);
-  SnapshotStack snapshots;
+  SnapshotStack snapshots(make_state_memory(Backend::cpu));
   MemoryPlan plan = plan_gradient(model, steps, {std::size_t(1) << 32, 0}, snapshots);
   RunCost cost;
   const ModelGradient gradient = differentiate_run(model, steps, *observer, plan, snapshots, cost, {});
@@ -72,7 +72,7 @@ TEST_CASE("the loss of a deck's observations by numbers of the deck") {
     const double value = resolved.at(nlohmann::json::json_pointer(pointer)).get<double>();
     const auto loss = [&](double moved) {
       const Model other = build_model(deck::with_assignments(deck, {pointer + "=" + nlohmann::json(moved).dump()}));
-      replay_run(other, steps, *observer, {});
+      replay_run(other, Backend::cpu, steps, *observer, {});
       return observer->loss();
     };
     const auto slope = [&](double h) { return (loss(value + h) - loss(value - h)) / (2 * h); };

@@ -71,6 +71,7 @@ void compare_all() {
   deck::LinearElastic elastic;
   elastic.density = 1500, elastic.youngs_modulus = 1e5, elastic.poisson_ratio = 0.3;
   compare<Dim, LinearElastic>(LinearElastic<double>::from(elastic), 1e4, 0.1);
+  compare<Dim, NeoHookean>(NeoHookean<double>::from(deck::NeoHookean{1000, 1e5, 0.3}), 0.1, 0.1);  // its history is a strain
   for (const double dilation : {0.0, 5.0, 30.0}) {  // the last turns the border of the tension zone
     deck::DruckerPrager sand;
     sand.density = 2000, sand.friction_angle = 30, sand.dilation_angle = dilation, sand.cohesion = 100, sand.tension_cutoff = 40;

@@ -78,6 +78,25 @@ class Gpu(ProgramTest):
                 self.assertAlmostEqual(time, gpu_time, delta=1e-12 * max(time, 1))
                 self.assertLess(max(worst.values()), ROUND_OFF[precision])
 
+    def gradient_on(self, backend, deck, *more):
+        """Numbers of the gradient of a deck by pointer, and its loss."""
+        said = self.expect(DONE, "gradient", deck, "--backend", backend, "--threads", "2", "--json", *more)
+        found = json.loads(said[said.index("{"):said.rindex("}") + 1])
+        return found["loss"], {pointer: np.atleast_1d(value) for pointer, value in found["gradient"].items()}
+
+    def test_gradients_are_those_of_the_cpu(self):
+        for name in ("velocity_linear", "friction", "granular_deposit", "dam_break_front"):
+            with self.subTest(deck=name):
+                short = ["--set", "/time/end=0.03"]
+                coarse = coarse_decks()[f"truth_{name}.json"] + short
+                self.expect(DONE, "run", INPUTS / f"truth_{name}.json", "-o", "truth", "--overwrite", "--backend", "cpu", *coarse, "--set", "/output/interval=0.01")
+                observation = {"kind": "particles", "body": "column", "field": "position", "file": str(self.scratch / "truth" / "results.h5")}
+                arguments = [INPUTS / f"invert_{name}.json", *coarse_decks()[f"invert_{name}.json"], *short, "--set", f"/inverse/observations={json.dumps([observation])}"]
+                (loss, cpu), (gpu_loss, gpu) = (self.gradient_on(backend, *arguments) for backend in ("cpu", "cuda"))
+                worst = max(np.abs(cpu[p] - gpu[p]).max() / np.abs(cpu[p]).max() for p in cpu if np.abs(cpu[p]).max() > 0)
+                print(f"{name}: loss {abs(loss - gpu_loss) / loss:.1e}, gradient {worst:.1e}", flush=True)
+                self.assertLess(max(worst, abs(loss - gpu_loss) / loss), 1e-6)
+
     def test_resume(self):
         deck = self.write(small_deck())
         self.run_on("cuda", deck, "resumed", "--set", "/time/end=0.05")

@@ -135,6 +135,6 @@ TEST_CASE("a checkpoint without the times of rest is refused") {
 
 TEST_CASE("gradients and GPUs refuse material at rest") {
   const Model model = bed_and_block(2, deck::Transfer::apic, true);
-  CHECK_THROWS_AS(make_reversible_solver(model), DeckError);
+  CHECK_THROWS_AS(make_reversible_solver(model, Backend::cpu), DeckError);
   CHECK_THROWS_AS(make_solver(model, Backend::cuda), DeckError);
 }

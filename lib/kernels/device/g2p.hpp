@@ -38,49 +38,58 @@ struct GatherScales {
         moment(Sch::S > 2 ? T(1 / Bspline<Sch::S>::second_moment) / step.cell_size : T(0)) {}
 };
 
-/// Σ over a particle's stencil of factor × node.
-template <class Sch>
-struct Gathered {
+/// Σ over a particle's stencil of factor × node, of `count` values of a plane's records from value `first` on.
+template <class Sch, bool with_d, bool with_g, int first, int count>
+struct PlaneSums {
   using T = typename Sch::T;
   static constexpr int Dim = Sch::Dim;
-  T value[Dim], change[Dim];              // Σ w v, Σ w Δv
-  T moments[Dim][Dim], slopes[Dim][Dim];  // [axis][component] Σ d v, Σ g v
+  T value[count];                             // Σ w q
+  T moments[Dim][count], slopes[Dim][count];  // [axis] Σ d q, Σ g q
 
   /// `base`: the stencil's first node in the arena.
-  JAXMPM_INLINE Gathered(const Factors<Sch>& s, int base, const T* arena) {
+  JAXMPM_INLINE PlaneSums(const Factors<Sch>& s, int base, const T* arena) {
     constexpr int last = Dim - 1;
-    for (int c = 0; c < Dim; ++c) {
-      value[c] = change[c] = T(0);
+    for (int c = 0; c < count; ++c) {
+      value[c] = T(0);
       for (int k = 0; k < Dim; ++k) moments[k][c] = slopes[k][c] = T(0);
     }
     JAXMPM_UNROLL
     for (int r = 0; r < StencilNodes<Sch>::rows; ++r) {
       const auto row = s.row(r);
-      T w[Dim] = {}, d[Dim] = {}, g[Dim] = {}, dv[Dim] = {};  // sums along the row
+      T w[count] = {}, d[count] = {}, g[count] = {};  // sums along the row
       JAXMPM_UNROLL
       for (int a = 0; a < Sch::S; ++a) {
-        const int node = base + StencilNodes<Sch>::at(r * Sch::S) + a;
-        const Quad<T> v = quad_at(arena, node);
-        for (int c = 0; c < Dim; ++c) {
-          w[c] += s.w[last][a] * v.a[1 + c];
-          if constexpr (Sch::g2p_moments) d[c] += s.d[last][a] * v.a[1 + c];
-          if constexpr (Sch::g2p_slopes) g[c] += s.g[last][a] * v.a[1 + c];
-        }
-        if constexpr (Sch::flip) {
-          const Quad<T> change_of = quad_at(arena + Sch::arena_plane, node);
-          for (int c = 0; c < Dim; ++c) dv[c] += s.w[last][a] * change_of.a[1 + c];
+        const Quad<T> q = quad_at(arena, base + StencilNodes<Sch>::at(r * Sch::S) + a);
+        for (int c = 0; c < count; ++c) {
+          w[c] += s.w[last][a] * q.a[first + c];
+          if constexpr (with_d) d[c] += s.d[last][a] * q.a[first + c];
+          if constexpr (with_g) g[c] += s.g[last][a] * q.a[first + c];
         }
       }
-      for (int c = 0; c < Dim; ++c) {
+      for (int c = 0; c < count; ++c) {
         value[c] += row.w * w[c];
-        if constexpr (Sch::flip) change[c] += row.w * dv[c];
         for (int k = 0; k < last; ++k) {
-          if constexpr (Sch::g2p_moments) moments[k][c] += row.d[k] * w[c];
-          if constexpr (Sch::g2p_slopes) slopes[k][c] += row.g[k] * w[c];
+          if constexpr (with_d) moments[k][c] += row.d[k] * w[c];
+          if constexpr (with_g) slopes[k][c] += row.g[k] * w[c];
         }
-        if constexpr (Sch::g2p_moments) moments[last][c] += row.w * d[c];
-        if constexpr (Sch::g2p_slopes) slopes[last][c] += row.w * g[c];
+        if constexpr (with_d) moments[last][c] += row.w * d[c];
+        if constexpr (with_g) slopes[last][c] += row.w * g[c];
       }
+    }
+  }
+};
+
+/// What a step gathers: velocities and, with FLIP, their changes.
+template <class Sch>
+struct Gathered : PlaneSums<Sch, Sch::g2p_moments, Sch::g2p_slopes, 1, Sch::Dim> {
+  using T = typename Sch::T;
+  T change[Sch::Dim];  // Σ w Δv
+
+  JAXMPM_INLINE Gathered(const Factors<Sch>& s, int base, const T* arena)
+      : PlaneSums<Sch, Sch::g2p_moments, Sch::g2p_slopes, 1, Sch::Dim>(s, base, arena) {
+    if constexpr (Sch::flip) {
+      const PlaneSums<Sch, false, false, 1, Sch::Dim> second(s, base, arena + Sch::arena_plane);
+      for (int c = 0; c < Sch::Dim; ++c) change[c] = second.value[c];
     }
   }
 };
@@ -110,7 +119,7 @@ struct GatherTiles {
     std::size_t p = tile.begin + std::size_t(team.team_rank());
     Position<Dim> ahead;  // is read one particle ahead of its use
     if (p < tile.end) ahead = Position<Dim>(particles, p);
-    load_arena(team, neighbour + std::size_t(tile.block) * Sch::Shape::neighbours, arena);
+    load_arena<Sch>(team, neighbour + std::size_t(tile.block) * Sch::Shape::neighbours, grid, arena);
     team.team_barrier();
     while (p < tile.end) {
       const State state(particles, p, ahead);
@@ -123,19 +132,6 @@ struct GatherTiles {
   }
 
  private:
-  /// Copies the grid around the tile's block into its arena, which begins one node below the block.
-  JAXMPM_INLINE void load_arena(const Team<Space>& team, const int* around, T* arena) const {
-    constexpr int A = Sch::Shape::A;
-    team_for(team, Sch::Shape::arena_nodes, [&](int i) {
-      Index<Dim> node{};
-      for (int d = Dim - 1, rest = i; d >= 0; --d, rest /= A) node[std::size_t(d)] = rest % A - 1;
-      const Place<Dim> at = locate<Dim>(around, Index<Dim>{}, node);
-      for (int plane = 0; plane < Sch::planes; ++plane)
-        quad_at(arena + plane * Sch::arena_plane, i) =
-            quad_at(grid + std::size_t(at.block) * Sch::own_size + plane * Sch::own_plane, at.own);
-    });
-  }
-
   /// What a particle has before the step: read at once, as the compiler keeps reads behind the writes that come before them in the text.
   struct State {
     static constexpr int history = Law::template history_size<Dim>();

@@ -27,6 +27,7 @@ struct GridTables {
   Walls<T, Dim> walls;
   const T* arenas;
   T *raw, *grid;     // [wall block][own], [block][own]
+  T* sums;           // [block][own]: what the arenas add up to, for the adjoint; null: not kept
   double* contact;   // [block][contact_size]: impulse of each face and obstacle, three values each; null: not recorded
   double* friction;  // [block]: work of friction since the last sort, added up; null: not recorded
   std::size_t contact_size;
@@ -47,6 +48,55 @@ struct GridTables {
   }
 };
 
+/// The arenas that reach a node, added up.
+template <class Sch>
+struct ArenaSums {
+  using T = typename Sch::T;
+  static constexpr int Dim = Sch::Dim, B = Sch::Shape::B;
+  const GridTables<T, Dim>& table;
+
+  /// Adds to the planes of own node `own` of block b.
+  JAXMPM_INLINE void add(std::size_t b, int own, T (&sum)[2][4]) const {
+    const int i = own / (B * B), j = own / B % B, k = own % B;  // 2D: i = 0
+    const Reach x(i), y(j), z(k);
+    for (int c = Dim == 2 ? 0 : x.from; c <= (Dim == 2 ? 0 : x.to); ++c)
+      for (int d = y.from; d <= y.to; ++d)
+        for (int e = z.from; e <= z.to; ++e) {
+          const int m = ((Dim == 2 ? 0 : c + 1) * 3 + d + 1) * 3 + e + 1;
+          if constexpr (Dim == 2) add_from(b, m, Sch::Shape::arena_node(in_arena(j, d), in_arena(k, e), 0), sum);
+          else add_from(b, m, Sch::Shape::arena_node(in_arena(i, c), in_arena(j, d), in_arena(k, e)), sum);
+        }
+  }
+
+ private:
+  /// Along one axis, the neighbours whose arenas reach node `own` of a block: those at the distances from … to. It is node own + 1 − d B
+  /// there.
+  struct Reach {
+    int from, to;
+    explicit JAXMPM_INLINE Reach(int own) : from(own < Sch::S ? -1 : 0), to(own == B - 1 ? 1 : 0) {}
+  };
+  static JAXMPM_INLINE int in_arena(int own, int d) { return own + 1 - d * B; }
+
+  /// Adds what the arenas of the neighbour m hold of a node, at `node` there.
+  JAXMPM_INLINE void add_from(std::size_t b, int m, int node, T (&sum)[2][4]) const {
+    const std::size_t entry = b * Sch::Shape::neighbours + std::size_t(m);
+    for (std::uint32_t k = table.first_arena[entry]; k < table.first_arena[entry + 1]; ++k) {
+      const T* arena = table.arenas + std::size_t(table.arena_tile[k]) * Sch::arena_size;
+      for (int plane = 0; plane < Sch::planes; ++plane) {
+        const Quad<T> given = quad_at(arena + plane * Sch::arena_plane, node);
+        for (int c = 0; c < 4; ++c) sum[plane][c] += given.a[c];
+      }
+    }
+  }
+};
+
+/// Writes the quads of a node to its block's own nodes.
+template <class Sch>
+JAXMPM_INLINE void write_node(const typename Sch::T (&quads)[2][4], int own, typename Sch::T* block) {
+  for (int plane = 0; plane < Sch::planes; ++plane)
+    quad_at(block + plane * Sch::own_plane, own) = {{quads[plane][0], quads[plane][1], quads[plane][2], quads[plane][3]}};
+}
+
 /// Sums of every node; where no wall is near also the velocities, with obstacles.
 template <class Sch, class Space>
 struct SumNodes {
@@ -61,44 +111,14 @@ struct SumNodes {
   }
 
  private:
-  static constexpr int B = Sch::Shape::B;
-
-  /// Along one axis, the neighbours whose arenas reach node `own` of a block: those at the distances from … to. It is node own + 1 − d B
-  /// there.
-  struct Reach {
-    int from, to;
-    explicit JAXMPM_INLINE Reach(int own) : from(own < Sch::S ? -1 : 0), to(own == B - 1 ? 1 : 0) {}
-  };
-  static JAXMPM_INLINE int in_arena(int own, int d) { return own + 1 - d * B; }
-
-  /// Adds what the arenas of the neighbour m hold of a node, at `node` there.
-  JAXMPM_INLINE void add(std::size_t b, int m, int node, T (&sum)[2][4]) const {
-    const std::size_t entry = b * Sch::Shape::neighbours + std::size_t(m);
-    for (std::uint32_t k = table.first_arena[entry]; k < table.first_arena[entry + 1]; ++k) {
-      const T* arena = table.arenas + std::size_t(table.arena_tile[k]) * Sch::arena_size;
-      for (int plane = 0; plane < Sch::planes; ++plane) {
-        const Quad<T> given = quad_at(arena + plane * Sch::arena_plane, node);
-        for (int c = 0; c < 4; ++c) sum[plane][c] += given.a[c];
-      }
-    }
-  }
-
   JAXMPM_INLINE void update(std::size_t b, int own) const {
     T sum[2][4] = {};
-    const int i = own / (B * B), j = own / B % B, k = own % B;  // 2D: i = 0
-    const Reach x(i), y(j), z(k);
-    for (int c = Dim == 2 ? 0 : x.from; c <= (Dim == 2 ? 0 : x.to); ++c)
-      for (int d = y.from; d <= y.to; ++d)
-        for (int e = z.from; e <= z.to; ++e) {
-          const int m = ((Dim == 2 ? 0 : c + 1) * 3 + d + 1) * 3 + e + 1;
-          if constexpr (Dim == 2) add(b, m, Sch::Shape::arena_node(in_arena(j, d), in_arena(k, e), 0), sum);
-          else add(b, m, Sch::Shape::arena_node(in_arena(i, c), in_arena(j, d), in_arena(k, e)), sum);
-        }
+    ArenaSums<Sch>{table}.add(b, own, sum);
+    if (table.sums) write_node<Sch>(sum, own, table.sums + b * Sch::own_size);
     const int slot = table.wall_slot[b];
     if (slot < 0) finish(b, own, sum);
     T* out = slot < 0 ? table.grid + b * Sch::own_size : table.raw + std::size_t(slot) * Sch::own_size;
-    for (int plane = 0; plane < Sch::planes; ++plane)
-      quad_at(out + plane * Sch::own_plane, own) = {{sum[plane][0], sum[plane][1], sum[plane][2], sum[plane][3]}};
+    write_node<Sch>(sum, own, out);
   }
 
   JAXMPM_INLINE void finish(std::size_t b, int own, T sum[2][4]) const {

@@ -8,13 +8,13 @@ namespace jaxmpm {
 
 /// How a team's memory is divided: the arena, where there is room for it, and a chunk of the tile's particles, as many as there is room
 /// for.
-template <class Sch>
+template <class Sch, class Gift>
 struct ScatterMemory {
   using T = typename Sch::T;
   static constexpr int total = 47 * 1024, most = 256, step = sizeof(T) == 4 ? 64 : 32, nodes = Sch::Shape::arena_nodes;
   static constexpr int of_arena = SpreadArena<Sch>::size * int(sizeof(T));
   static constexpr int of_chunk(int capacity) {
-    return Records<Sch>::slots(capacity) * Records<Sch>::size * int(sizeof(T)) + int(sizeof(CellLists<nodes, most>)) -
+    return Records<Sch, Gift>::slots(capacity) * Records<Sch, Gift>::size * int(sizeof(T)) + int(sizeof(CellLists<nodes, most>)) -
            2 * (most - capacity);
   }
   static constexpr bool arena = of_arena + of_chunk(64) <= total;
@@ -24,29 +24,29 @@ struct ScatterMemory {
   using Arena = std::conditional_t<arena, SpreadArena<Sch>, PlainArena<Sch>>;
 };
 
-template <class Sch, class Law, class Space>
+/// Scatters what `gift` makes of each particle.
+template <class Sch, class Gift, class Space>
 struct ScatterTiles {
   using T = typename Sch::T;
-  using Memory = ScatterMemory<Sch>;
+  using Memory = ScatterMemory<Sch, Gift>;
   using Arena = typename Memory::Arena;
-  using Sums = CellSums<Sch, Arena>;
+  using Sums = CellSums<Sch, Gift, Arena>;
+  using Record = Records<Sch, Gift>;
   static constexpr int Dim = Sch::Dim, capacity = Memory::capacity;
   using Lists = CellLists<Memory::nodes, capacity>;
   static constexpr std::size_t scratch = std::size_t(Memory::bytes(capacity));
   static constexpr int threads = capacity >= 192 ? 128 : 64, resident = sizeof(T) == 4 ? 5 : 4;
   ParticleFields<T, Dim> particles;
   TileTable<T, Dim> table;
-  Law law;
-  StepConstants<T> step;
+  Gift gift;
 
   JAXMPM_FUNCTION void operator()(const Team<Space>& team) const {
     const Tile tile = table.tiles[team.league_rank()];
     const Index<Dim> origin = table.origin(tile);
     T* out = table.arenas + std::size_t(team.league_rank()) * Sch::arena_size;
     T* arena = Memory::arena ? team_memory<T>(team, Arena::size) : out;
-    T* records = team_memory<T>(team, Records<Sch>::slots(capacity) * Records<Sch>::size);
+    T* records = team_memory<T>(team, Record::slots(capacity) * Record::size);
     Lists& lists = *team_memory<Lists>(team, 1);
-    const ScatterScales<Sch> scales(step, law.density);
     team_for(team, Arena::size, [&](int i) { arena[i] = T(0); });
     const std::size_t chunk = chunk_size(tile.end - tile.begin);
     for (std::size_t first = tile.begin; first < tile.end; first += chunk) {
@@ -55,7 +55,7 @@ struct ScatterTiles {
       team_for(team, int(tile.end - first < chunk ? tile.end - first : chunk), [&](int i) {
         const std::size_t p = first + std::size_t(i);
         const Cell<Sch> cell(Position<Dim>(particles, p), origin);
-        write_record<Sch>(particles, p, cell, law, scales, records + Records<Sch>::template place<capacity>(i));
+        gift.write(particles, p, cell, records + Record::template place<capacity>(i));
         lists.add(cell.base, i);
       });
       team.team_barrier();
@@ -69,14 +69,13 @@ struct ScatterTiles {
  private:
   /// Particles of a chunk: equal shares of a tile, of whole storage groups.
   static JAXMPM_INLINE std::size_t chunk_size(std::size_t count) {
-    constexpr std::size_t most = capacity, group = Records<Sch>::apart;
+    constexpr std::size_t most = capacity, group = Record::apart;
     const std::size_t chunks = (count + most - 1) / most, share = (count + chunks - 1) / chunks;
     return (share + group - 1) / group * group;
   }
   static JAXMPM_INLINE void add_component(const Lists& lists, const T* records, int base, int component, T* arena) {
     Sums sums;
-    for (int i = lists.head[base]; i != Lists::none; i = lists.next[i])
-      sums.add(records + Records<Sch>::template place<capacity>(i), component);
+    for (int i = lists.head[base]; i != Lists::none; i = lists.next[i]) sums.add(records + Record::template place<capacity>(i), component);
     sums.give(arena, base, component);
   }
 };

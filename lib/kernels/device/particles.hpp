@@ -99,6 +99,25 @@ class DeviceParticles {
   void swap() { std::swap(positions_, spare_positions_), std::swap(reals_, spare_reals_), std::swap(ids_, spare_ids_); }
   int rows() const { return int(rows_); }
 
+  /// Bytes of a copy of all fields but the ids; to and from such a copy in the device's memory, in the space's queue.
+  std::size_t kept_bytes() const { return positions_.span() * sizeof(double) + reals_.span() * sizeof(T); }
+  void keep(const Space& space, std::byte* to) const {
+    Kokkos::deep_copy(space, kept<double>(to, positions_), positions_);
+    Kokkos::deep_copy(space, kept<T>(to + positions_.span() * sizeof(double), reals_), reals_);
+  }
+  void go_back(const Space& space, const std::byte* from) {
+    Kokkos::deep_copy(space, positions_, kept<const double>(from, positions_));
+    Kokkos::deep_copy(space, reals_, kept<const T>(from + positions_.span() * sizeof(double), reals_));
+  }
+  DeviceArray<std::uint32_t, Space> copy_of_ids(const Space& space) const {
+    const Ids copy = device_array<std::uint32_t, Space>("jaxmpm::ids", count_);
+    Kokkos::deep_copy(space, copy, ids_);
+    return copy;
+  }
+  void set_ids(const Space& space, const DeviceArray<std::uint32_t, Space>& ids) { Kokkos::deep_copy(space, ids_, ids); }
+  /// Sets all fields but the ids to zero.
+  void clear(const Space& space) { Kokkos::deep_copy(space, positions_, 0.0), Kokkos::deep_copy(space, reals_, T(0)); }
+
   /// Copies all fields from host arrays of the same shapes.
   void load(const Particles<T, Dim>& host) {
     std::size_t k = 0;
@@ -120,6 +139,12 @@ class DeviceParticles {
   using Reals = DeviceArray<T, Space>;
   using Ids = DeviceArray<std::uint32_t, Space>;
 
+  /// The part of a copy that is like `table`.
+  template <class V, class Bytes, class Table>
+  static auto kept(Bytes* bytes, const Table& table) {
+    return Kokkos::View<V*, typename Space::memory_space, Kokkos::MemoryTraits<Kokkos::Unmanaged>>(reinterpret_cast<V*>(bytes),
+                                                                                                   table.span());
+  }
   ParticleFields<T, Dim> view(const Doubles& positions, const Reals& reals, const Ids& ids) const {
     const int history = Dim + 2 + int(affine_);
     return {positions.data(), reals.data(), ids.data(), stride_, history, gradient_ > 0 ? history + int(history_) : -1};

@@ -42,13 +42,56 @@ JAXMPM_INLINE void add_share(const Factors<Sch>& s, const Share<T, Dim>& q, T* s
   }
 }
 
-/// The records of a team's particles: offset in the cell, mass, and the shares of all components.
-template <class Sch>
+/// What particles give to the nodes in a step, {mass, momentum} or with FLIP a second plane's impulse: the `Gift` of the templates below.
+template <class Sch, class Law>
+class StepGift {
+  using T = typename Sch::T;
+  static constexpr int Dim = Sch::Dim;
+  Law law_;
+  T affine_, impulse_;  // Δx of m Δx C, which goes with d; −Δt / (ρ0 Δx) of V = m / (ρ0 (1 + e)): −Δt V σ / Δx goes with g or, mls,
+                        // −Δt V σ D⁻¹ Δx / Δx² with d
+
+ public:
+  static constexpr bool mass = true;                                          // as component 0
+  static constexpr bool with_d = Sch::p2g_moments, with_g = Sch::p2g_slopes;  // factors besides the weight
+  static constexpr bool second_plain = false;                                 // something goes with w to the second plane
+  static constexpr int full = Sch::flip ? 1 : 0;                              // the plane that gets what goes with d and g
+  JAXMPM_INLINE StepGift(const Law& law, const StepConstants<T>& step)
+      : law_(law),
+        affine_(step.cell_size),
+        impulse_(-step.dt * (Sch::mls ? T(1 / Bspline<Sch::S>::second_moment) : T(1)) / step.cell_size / law.density) {}
+
+  /// Writes a particle's record: its offset in the cell, its mass, and the share of each component.
+  JAXMPM_INLINE void write(const ParticleFields<T, Dim>& f, std::size_t p, const Cell<Sch>& cell, T* record) const {
+    constexpr int history = Law::template history_size<Dim>();
+    T h[history > 0 ? history : 1];
+    for (int k = 0; k < history; ++k) h[k] = f.history(k, p);
+    const T e = f.compression(p), mass = f.mass(p);
+    const Symmetric<T, Dim> sigma = law_.template stress<T, Dim>(e, h);
+    const T by_stress = mass * impulse_ / (T(1) + e), by_affine = mass * affine_;
+    for (int k = 0; k < Dim; ++k) *record++ = cell.offset[k];
+    *record++ = mass;
+    for (int c = 0; c < Dim; ++c) {
+      *record++ = mass * f.velocity(c, p);
+      for (int k = 0; k < Dim; ++k) {
+        const T impulse = by_stress * sigma(c, k);
+        T affine(0);
+        if constexpr (Sch::affine) affine = by_affine * f.affine(c * Dim + k, p);
+        if constexpr (with_d) record[k] = Sch::mls ? affine + impulse : affine;
+        if constexpr (with_g) record[(with_d ? Dim : 0) + k] = impulse;
+      }
+      record += (with_d ? Dim : 0) + (with_g ? Dim : 0);
+    }
+  }
+};
+
+/// The records of a team's particles: offset in the cell, mass where it is given, and the shares of all components.
+template <class Sch, class Gift>
 struct Records {
   using T = typename Sch::T;
   static constexpr int Dim = Sch::Dim;
-  static constexpr bool with_d = Sch::p2g_moments, with_g = Sch::p2g_slopes;
-  static constexpr int of_component = 1 + (with_d ? Dim : 0) + (with_g ? Dim : 0), used = Dim + 1 + Dim * of_component;
+  static constexpr int plain = 1 + int(Gift::second_plain), of_component = plain + (Gift::with_d ? Dim : 0) + (Gift::with_g ? Dim : 0);
+  static constexpr int first = Dim + int(Gift::mass), used = first + Dim * of_component;
   // Neighbours in storage mostly stand in one cell, and the threads that read at a time read a particle of as many cells: particles eight
   // apart lie beside each other, at distances that spread reads and writes over all banks of the memory.
   static constexpr int size = used | 1, apart = 8;
@@ -61,41 +104,6 @@ struct Records {
     return (i % apart * group(capacity) + i / apart) * size;
   }
 };
-
-/// What turns a particle's mass into its gifts: m Δx C goes with d; −Δt V σ / Δx with g or, mls, −Δt V σ D⁻¹ Δx / Δx² with d.
-template <class Sch>
-struct ScatterScales {
-  using T = typename Sch::T;
-  T affine, impulse;  // Δx; −Δt / (ρ0 Δx), of a particle with V = m / (ρ0 (1 + e))
-  JAXMPM_INLINE ScatterScales(const StepConstants<T>& step, T density)
-      : affine(step.cell_size), impulse(-step.dt * (Sch::mls ? T(1 / Bspline<Sch::S>::second_moment) : T(1)) / step.cell_size / density) {}
-};
-
-/// Writes a particle's record.
-template <class Sch, class Law>
-JAXMPM_INLINE void write_record(const ParticleFields<typename Sch::T, Sch::Dim>& f, std::size_t p, const Cell<Sch>& cell, const Law& law,
-                                const ScatterScales<Sch>& scales, typename Sch::T* record) {
-  using T = typename Sch::T;
-  constexpr int Dim = Sch::Dim, history = Law::template history_size<Dim>();
-  T h[history > 0 ? history : 1];
-  for (int k = 0; k < history; ++k) h[k] = f.history(k, p);
-  const T e = f.compression(p), mass = f.mass(p);
-  const Symmetric<T, Dim> sigma = law.template stress<T, Dim>(e, h);
-  const T by_stress = mass * scales.impulse / (T(1) + e), by_affine = mass * scales.affine;
-  for (int k = 0; k < Dim; ++k) *record++ = cell.offset[k];
-  *record++ = mass;
-  for (int c = 0; c < Dim; ++c) {
-    *record++ = mass * f.velocity(c, p);
-    for (int k = 0; k < Dim; ++k) {
-      const T impulse = by_stress * sigma(c, k);
-      T affine(0);
-      if constexpr (Sch::affine) affine = by_affine * f.affine(c * Dim + k, p);
-      if constexpr (Sch::p2g_moments) record[k] = Sch::mls ? affine + impulse : affine;
-      if constexpr (Sch::p2g_slopes) record[(Sch::p2g_moments ? Dim : 0) + k] = impulse;
-    }
-    record += Records<Sch>::of_component - 1;
-  }
-}
 
 /// The arena of a team in its own memory, value by value (mass, momentum; FLIP: impulse): the threads of a warp add one value at the base
 /// nodes of neighbouring cells at a time, and the distance of layers (in 2D rows) spreads these over all banks of the memory.
@@ -134,52 +142,55 @@ struct PlainArena {
   static JAXMPM_INLINE void hand_in(const Team&, const T*, T*) {}
 };
 
-/// The mass or one component of a cell's particles, summed at the nodes of their stencil.
-template <class Sch, class Arena>
+/// The mass or one component of what a cell's particles give, summed at the nodes of their stencil.
+template <class Sch, class Gift, class Arena>
 class CellSums {
   using T = typename Sch::T;
-  using R = Records<Sch>;
-  static constexpr int Dim = Sch::Dim, nodes = StencilNodes<Sch>::all;
-  T sum_[nodes] = {}, impulse_[Sch::flip ? nodes : 1] = {};
+  using R = Records<Sch, Gift>;
+  static constexpr int Dim = Sch::Dim, nodes = StencilNodes<Sch>::all, with_mass = int(Gift::mass);
+  static constexpr bool with_d = Gift::with_d, with_g = Gift::with_g;
+  T sum_[nodes] = {}, second_[Sch::flip ? nodes : 1] = {};
 
  public:
-  static constexpr int components = 1 + Dim;  // 0: mass
+  static constexpr int components = with_mass + Dim;  // 0: mass where it is given
 
   JAXMPM_INLINE void add(const T* record, int component) {
     T offset[Dim];
     for (int k = 0; k < Dim; ++k) offset[k] = record[k];
     const Factors<Sch> s(offset);
     Share<T, Dim> q;
-    if (component == 0) {
+    if (component < with_mass) {
       q.plain = record[Dim];
       add_share<false, false>(s, q, sum_);
       return;
     }
-    record += Dim + 1 + (component - 1) * R::of_component;
+    record += R::first + (component - with_mass) * R::of_component;
     q.plain = record[0];
     for (int k = 0; k < Dim; ++k) {
-      if constexpr (R::with_d) q.d[k] = record[1 + k];
-      if constexpr (R::with_g) q.g[k] = record[1 + (R::with_d ? Dim : 0) + k];
+      if constexpr (with_d) q.d[k] = record[R::plain + k];
+      if constexpr (with_g) q.g[k] = record[R::plain + (with_d ? Dim : 0) + k];
     }
-    if constexpr (Sch::flip) {
+    if constexpr (Gift::full == 1) {
       add_share<false, false>(s, q, sum_);
       q.plain = T(0);
-      add_share<R::with_d, R::with_g>(s, q, impulse_);
+      add_share<with_d, with_g>(s, q, second_);
     } else {
-      add_share<R::with_d, R::with_g>(s, q, sum_);
+      add_share<with_d, with_g>(s, q, sum_);
+      if constexpr (Gift::second_plain) q.plain = record[1], add_share<false, false>(s, q, second_);
     }
   }
 
   /// Adds the sums to the team's arena, where the stencil begins at node `base`.
   JAXMPM_INLINE void give(T* arena, int base, int component) const {
-    T* first = arena + Arena::value(component) + Arena::place(base);
-    T* second = arena + Arena::value(component + Dim) + Arena::place(base);
+    const int value = component + 1 - with_mass;
+    T* first = arena + Arena::value(value) + Arena::place(base);
+    T* second = arena + Arena::value(value + Dim) + Arena::place(base);
     JAXMPM_UNROLL
     for (int n = 0; n < nodes; ++n) {
       const int node = Arena::place(StencilNodes<Sch>::at(n));
       Kokkos::atomic_add(first + node, sum_[n]);
       if constexpr (Sch::flip)
-        if (component > 0) Kokkos::atomic_add(second + node, impulse_[n]);
+        if (value > 0) Kokkos::atomic_add(second + node, second_[n]);
     }
   }
 };

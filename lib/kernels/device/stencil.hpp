@@ -31,6 +31,8 @@ struct StencilNodes {
   static constexpr int S = Sch::S, Dim = Sch::Dim;
   static constexpr int count(int axes) { return axes == 0 ? 1 : S * count(axes - 1); }
   static constexpr int all = count(Dim), layer = count(Dim - 1), rows = all / S;
+  /// From one node to the next along an axis.
+  static constexpr int step(int axis) { return axis == Dim - 1 ? 1 : Sch::Shape::A * step(axis + 1); }
   /// Node n from the stencil's first.
   static constexpr int at(int n) {
     return Dim == 2 ? Sch::Shape::arena_node(n / S, n % S, 0) : Sch::Shape::arena_node(n / (S * S), n / S % S, n % S);
@@ -53,6 +55,14 @@ struct Factors {
       JAXMPM_UNROLL
       for (int a = 0; a < S; ++a) d[axis][a] = w[axis][a] * (T(a) - offset[axis]);
     }
+  }
+
+  /// The derivatives of all factors by X along one axis, in the place of those: d' = g (X_i − X_p) − w.
+  JAXMPM_INLINE Factors by(int axis, const T (&offset)[Dim]) const {
+    Factors s = *this;
+    for (int a = 0; a < S; ++a) s.w[axis][a] = g[axis][a], s.d[axis][a] = g[axis][a] * (T(a) - offset[axis]) - w[axis][a];
+    Bspline<S>::curvatures(offset[axis], s.g[axis]);
+    return s;
   }
 
   /// Products over the axes but the last, for a row of nodes along that: w of all of them, and with d or g on axis k.
@@ -95,6 +105,21 @@ struct Cell {
     }
   }
 };
+
+/// Copies the nodes around a block, whose row of Blocks::neighbour is `around`, from those of all blocks ([block][own]) into a tile's
+/// arena, which begins one node below the block.
+template <class Sch, class Team>
+JAXMPM_INLINE void load_arena(const Team& team, const int* around, const typename Sch::T* nodes, typename Sch::T* arena) {
+  constexpr int A = Sch::Shape::A, Dim = Sch::Dim;
+  team_for(team, Sch::Shape::arena_nodes, [&](int i) {
+    Index<Dim> node{};
+    for (int d = Dim - 1, rest = i; d >= 0; --d, rest /= A) node[std::size_t(d)] = rest % A - 1;
+    const Place<Dim> at = locate<Dim>(around, Index<Dim>{}, node);
+    for (int plane = 0; plane < Sch::planes; ++plane)
+      quad_at(arena + plane * Sch::arena_plane, i) =
+          quad_at(nodes + std::size_t(at.block) * Sch::own_size + plane * Sch::own_plane, at.own);
+  });
+}
 
 /// The tiles of one body, in a device's memory.
 template <class T, int Dim>

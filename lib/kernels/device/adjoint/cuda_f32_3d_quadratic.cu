@@ -1,0 +1,5 @@
+#include "kernels/device/adjoint/scheme_impl.hpp"
+
+namespace jaxmpm {
+template DeviceAdjoint<float, 3, Kokkos::Cuda> device_adjoint<float, 3, 3, Kokkos::Cuda>(deck::Transfer, deck::GradientForm);
+}

@@ -1,0 +1,146 @@
+#pragma once
+// Adjoint of the transfer from grid to particles and of the stress update on a device: a thread a particle, which leaves the derivatives by
+// what it gathered in a table; ScatterTiles then scatters these as it does a step's momenta.
+#include "kernels/device/adjoint/contract.hpp"
+#include "kernels/device/g2p.hpp"
+
+namespace jaxmpm {
+
+/// Derivatives by the sums that particles gathered, [row][stride]: of each component by Σ w v, with FLIP by Σ w Δv, by Σ d v and Σ g v of
+/// all axes. A `Gift` of the scatter (shares.hpp).
+template <class Sch>
+struct GatheredBarTable {
+  using T = typename Sch::T;
+  static constexpr int Dim = Sch::Dim;
+  static constexpr bool mass = false, with_d = Sch::g2p_moments, with_g = Sch::g2p_slopes, second_plain = Sch::flip;
+  static constexpr int full = 0;
+  static constexpr int first_d = 1 + int(second_plain), first_g = first_d + (with_d ? Dim : 0), of_component = first_g + (with_g ? Dim : 0);
+  static constexpr int rows = Dim * of_component;
+  T* table;
+  std::size_t stride;
+
+  JAXMPM_INLINE T& at(int row, std::size_t p) const { return table[std::size_t(row) * stride + p]; }
+  JAXMPM_INLINE void write(const ParticleFields<T, Dim>&, std::size_t p, const Cell<Sch>& cell, T* record) const {
+    for (int k = 0; k < Dim; ++k) *record++ = cell.offset[k];
+    for (int k = 0; k < rows; ++k) *record++ = at(k, p);
+  }
+};
+
+template <class Sch, class Law, class Space>
+struct GatherAdjoint {
+  using T = typename Sch::T;
+  using Out = GatheredBarTable<Sch>;
+  static constexpr int Dim = Sch::Dim;
+  static constexpr std::size_t scratch = Sch::arena_size * sizeof(T) + 16;
+  static constexpr int threads = 128, resident = sizeof(T) == 4 ? 3 : 2;
+  ParticleFields<T, Dim> particles, bars;
+  TileTable<T, Dim> table;
+  Law law;
+  StepConstants<T> step;
+  const int* neighbour;  // Blocks::neighbour
+  const T* grid;         // [block][own]: velocities
+  Out out;
+  double *flip_fraction, *body;  // places of ConstantBars
+
+  JAXMPM_FUNCTION void operator()(const Team<Space>& team) const {
+    const Tile tile = table.tiles[team.league_rank()];
+    const Index<Dim> origin = table.origin(tile);
+    T* arena = team_memory<T>(team, Sch::arena_size);
+    load_arena<Sch>(team, neighbour + std::size_t(tile.block) * Sch::Shape::neighbours, grid, arena);
+    team.team_barrier();
+    MaterialBars<Law> mine;
+    double by_flip = 0;
+    for (std::size_t p = tile.begin + std::size_t(team.team_rank()); p < tile.end; p += std::size_t(team.team_size()))
+      update(p, origin, arena, mine, by_flip);
+    mine.give(team, body);
+    if constexpr (Sch::flip) MaterialBars<Law>::give_sum(team, by_flip, flip_fraction);
+  }
+
+ private:
+  /// Derivatives by what a particle gathered.
+  struct By {
+    Share<T, Dim> component[Dim] = {};
+    T change[Dim] = {};  // FLIP
+    JAXMPM_INLINE T& affine(int c, int k) { return Sch::affine_by_moments ? component[c].d[k] : component[c].g[k]; }
+    JAXMPM_INLINE T& gradient(int c, int k) { return Sch::mls ? component[c].d[k] : component[c].g[k]; }
+  };
+
+  JAXMPM_INLINE void update(std::size_t p, const Index<Dim>& origin, const T* arena, MaterialBars<Law>& mine, double& by_flip) const {
+    const Cell<Sch> cell(Position<Dim>(particles, p), origin);
+    const Factors<Sch> factors(cell.offset);
+    const Gathered<Sch> sum(factors, cell.base, arena);
+    const GatherScales<Sch> scales(step);
+    By by;
+    for (int c = 0; c < Dim; ++c) {  // x ← x + Δt v, and the velocity
+      const T end = bars.velocity(c, p);
+      by.component[c].plain = scales.move * T(bars.position(c, p));
+      if constexpr (Sch::flip) {
+        by.component[c].plain += (T(1) - step.flip_fraction) * end;
+        by.change[c] = step.flip_fraction * end;
+        by_flip += double(end * (particles.velocity(c, p) + sum.change[c] - sum.value[c]));
+        bars.velocity(c, p) = step.flip_fraction * end;
+      } else {
+        by.component[c].plain += end;
+        bars.velocity(c, p) = T(0);
+      }
+      if constexpr (Sch::affine)
+        for (int k = 0; k < Dim; ++k) {
+          by.affine(c, k) += (Sch::affine_by_moments ? scales.moment : scales.slope) * bars.affine(c * Dim + k, p);
+          bars.affine(c * Dim + k, p) = T(0);
+        }
+    }
+    material(p, sum, scales, by, mine);
+    move(p, cell, factors, arena, by);
+    for (int c = 0; c < Dim; ++c) write(p, c, by);
+  }
+
+  /// The stress update: from its end values to its start values and the increment of deformation.
+  JAXMPM_INLINE void material(std::size_t p, const Gathered<Sch>& sum, const GatherScales<Sch>& scales, By& by,
+                              MaterialBars<Law>& mine) const {
+    constexpr int history = Law::template history_size<Dim>();
+    const T rate = step.dt * (Sch::mls ? scales.moment : scales.slope);
+    Matrix<T, Dim> H, by_H;
+    for (int c = 0; c < Dim; ++c)
+      for (int k = 0; k < Dim; ++k) H(c, k) = rate * (Sch::mls ? sum.moments[k][c] : sum.slopes[k][c]);
+    T h[history > 0 ? history : 1], by_h[history > 0 ? history : 1], by_constants[MaterialBars<Law>::count] = {};
+    for (int k = 0; k < history; ++k) h[k] = particles.history(k, p), by_h[k] = bars.history(k, p);
+    T by_e = bars.compression(p);
+    const auto kink = law.template update_adjoint<T, Dim>(H, step.dt, particles.compression(p), h, by_e, by_h, by_H, by_constants);
+    bars.compression(p) = by_e;
+    for (int k = 0; k < history; ++k) bars.history(k, p) = by_h[k];
+    for (int c = 0; c < Dim; ++c)
+      for (int k = 0; k < Dim; ++k) by.gradient(c, k) += rate * by_H(c, k);
+    mine.add(by_constants);
+    mine.kinks += kink ? 1 : 0;
+  }
+
+  /// The factors follow the particle's place.
+  JAXMPM_INLINE void move(std::size_t p, const Cell<Sch>& cell, const Factors<Sch>& factors, const T* arena, const By& by) const {
+    const T* first = arena + 4 * cell.base + 1;
+    for (int axis = 0; axis < Dim; ++axis) {
+      const Factors<Sch> slopes = factors.by(axis, cell.offset);
+      T by_x(0);
+      for (int c = 0; c < Dim; ++c) {
+        by_x += contract<Out::with_d, Out::with_g>(slopes, by.component[c], first + c);
+        if constexpr (Sch::flip) {
+          Share<T, Dim> change{};
+          change.plain = by.change[c];
+          by_x += contract<false, false>(slopes, change, first + Sch::arena_plane + c);
+        }
+      }
+      bars.position(axis, p) += double(by_x);
+    }
+  }
+
+  JAXMPM_INLINE void write(std::size_t p, int c, const By& by) const {
+    const int row = c * Out::of_component;
+    out.at(row, p) = by.component[c].plain;
+    if constexpr (Out::second_plain) out.at(row + 1, p) = by.change[c];
+    for (int k = 0; k < Dim; ++k) {
+      if constexpr (Out::with_d) out.at(row + Out::first_d + k, p) = by.component[c].d[k];
+      if constexpr (Out::with_g) out.at(row + Out::first_g + k, p) = by.component[c].g[k];
+    }
+  }
+};
+
+}  // namespace jaxmpm

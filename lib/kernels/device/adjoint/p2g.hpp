@@ -1,0 +1,131 @@
+#pragma once
+// Adjoint of the transfer from particles to grid on a device: a gather of the derivatives by the nodes' sums, a thread a particle.
+#include "kernels/device/adjoint/contract.hpp"
+#include "kernels/device/g2p.hpp"
+
+namespace jaxmpm {
+
+template <class Sch, class Law, class Space>
+struct ScatterAdjoint {
+  using T = typename Sch::T;
+  using Gift = StepGift<Sch, Law>;
+  using Record = Records<Sch, Gift>;
+  static constexpr int Dim = Sch::Dim, history = Law::template history_size<Dim>(), slots = history > 0 ? history : 1;
+  static constexpr std::size_t scratch = Sch::arena_size * sizeof(T) + 16;
+  static constexpr int threads = 128, resident = sizeof(T) == 4 ? 3 : 2;
+  ParticleFields<T, Dim> particles, bars;
+  TileTable<T, Dim> table;
+  Law law;
+  StepConstants<T> step;
+  const int* neighbour;  // Blocks::neighbour
+  const T* by_sums;      // [block][own]
+  double* body;          // of ConstantBars
+
+  JAXMPM_FUNCTION void operator()(const Team<Space>& team) const {
+    const Tile tile = table.tiles[team.league_rank()];
+    const Index<Dim> origin = table.origin(tile);
+    T* arena = team_memory<T>(team, Sch::arena_size);
+    load_arena<Sch>(team, neighbour + std::size_t(tile.block) * Sch::Shape::neighbours, by_sums, arena);
+    team.team_barrier();
+    MaterialBars<Law> mine;
+    for (std::size_t p = tile.begin + std::size_t(team.team_rank()); p < tile.end; p += std::size_t(team.team_size())) {
+      const Cell<Sch> cell(Position<Dim>(particles, p), origin);
+      const Factors<Sch> factors(cell.offset);
+      move(p, cell, factors, arena);
+      fields(p, Sums(factors, cell.base, arena), mine);
+    }
+    mine.give(team, body);
+  }
+
+ private:
+  /// Derivatives by a particle's shares.
+  struct Sums {
+    T value[1 + Dim];                       // by mass and momentum
+    T moments[Dim][Dim], slopes[Dim][Dim];  // [axis][component]
+    JAXMPM_INLINE Sums(const Factors<Sch>& factors, int base, const T* arena) {
+      if constexpr (Sch::flip) {
+        take(PlaneSums<Sch, false, false, 0, 1 + Dim>(factors, base, arena).value);
+        take(PlaneSums<Sch, Gift::with_d, Gift::with_g, 1, Dim>(factors, base, arena + Sch::arena_plane), 0);
+      } else {
+        const PlaneSums<Sch, Gift::with_d, Gift::with_g, 0, 1 + Dim> sum(factors, base, arena);
+        take(sum.value), take(sum, 1);
+      }
+    }
+
+   private:
+    JAXMPM_INLINE void take(const T (&from)[1 + Dim]) {
+      for (int c = 0; c <= Dim; ++c) value[c] = from[c];
+    }
+    template <class Plane>
+    JAXMPM_INLINE void take(const Plane& sum, int first) {
+      for (int k = 0; k < Dim; ++k)
+        for (int c = 0; c < Dim; ++c) moments[k][c] = sum.moments[k][first + c], slopes[k][c] = sum.slopes[k][first + c];
+    }
+  };
+
+  /// The factors follow the particle's place.
+  JAXMPM_INLINE void move(std::size_t p, const Cell<Sch>& cell, const Factors<Sch>& factors, const T* arena) const {
+    T record[Record::used];
+    Gift(law, step).write(particles, p, cell, record);
+    Share<T, Dim> mass{}, share[Dim] = {};
+    mass.plain = record[Dim];
+    for (int c = 0; c < Dim; ++c) {
+      const T* of = record + Record::first + c * Record::of_component;
+      share[c].plain = of[0];
+      for (int k = 0; k < Dim; ++k) {
+        if constexpr (Gift::with_d) share[c].d[k] = of[1 + k];
+        if constexpr (Gift::with_g) share[c].g[k] = of[1 + (Gift::with_d ? Dim : 0) + k];
+      }
+    }
+    const T* first = arena + 4 * cell.base;
+    for (int axis = 0; axis < Dim; ++axis) {
+      const Factors<Sch> slopes = factors.by(axis, cell.offset);
+      T by_x = contract<false, false>(slopes, mass, first);
+      for (int c = 0; c < Dim; ++c) {
+        Share<T, Dim> rest = share[c];
+        if constexpr (Sch::flip) by_x += contract<false, false>(slopes, rest, first + 1 + c), rest.plain = T(0);
+        by_x += contract<Gift::with_d, Gift::with_g>(slopes, rest, first + Gift::full * Sch::arena_plane + 1 + c);
+      }
+      bars.position(axis, p) += double(by_x);
+    }
+  }
+
+  /// What the derivatives by a particle's shares bring to its fields.
+  JAXMPM_INLINE void fields(std::size_t p, const Sums& by, MaterialBars<Law>& mine) const {
+    const T m = particles.mass(p), e = particles.compression(p), growth = T(1) / (T(1) + e);
+    T by_mass = by.value[0];
+    for (int c = 0; c < Dim; ++c) {
+      by_mass += by.value[1 + c] * particles.velocity(c, p);
+      bars.velocity(c, p) += m * by.value[1 + c];
+      if constexpr (Sch::affine)
+        for (int k = 0; k < Dim; ++k) {
+          const T by_affine = step.cell_size * by.moments[k][c];
+          by_mass += by_affine * particles.affine(c * Dim + k, p);
+          bars.affine(c * Dim + k, p) += m * by_affine;
+        }
+    }
+    T h[slots], by_h[slots], by_constants[MaterialBars<Law>::count] = {};
+    for (int k = 0; k < history; ++k) h[k] = particles.history(k, p), by_h[k] = bars.history(k, p);
+    const Symmetric<T, Dim> sigma = law.template stress<T, Dim>(e, h);
+    const T per_cell = (Sch::mls ? T(1 / Bspline<Sch::S>::second_moment) : T(1)) / step.cell_size;
+    const T per_mass = -step.dt * per_cell / law.density * growth, impulse = m * per_mass;
+    T by_impulse(0);
+    Symmetric<T, Dim> by_sigma{};
+    for (int c = 0; c < Dim; ++c)
+      for (int k = 0; k < Dim; ++k) {
+        const T force = Sch::mls ? by.moments[k][c] : by.slopes[k][c];
+        by_impulse += force * sigma(c, k);
+        by_sigma[Symmetric<T, Dim>::index(c, k)] += impulse * force;
+      }
+    bars.mass(p) += by_mass + by_impulse * per_mass;
+    const T by_volume = by_impulse * impulse;
+    T by_e = bars.compression(p) - by_volume * growth;
+    by_constants[0] = -by_volume / law.density;
+    law.template stress_adjoint<T, Dim>(e, h, by_sigma, by_e, by_h, by_constants);
+    bars.compression(p) = by_e;
+    for (int k = 0; k < history; ++k) bars.history(k, p) = by_h[k];
+    mine.add(by_constants);
+  }
+};
+
+}  // namespace jaxmpm
