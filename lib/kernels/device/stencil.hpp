@@ -57,14 +57,6 @@ struct Factors {
     }
   }
 
-  /// The derivatives of all factors by X along one axis, in the place of those: d' = g (X_i − X_p) − w.
-  JAXMPM_INLINE Factors by(int axis, const T (&offset)[Dim]) const {
-    Factors s = *this;
-    for (int a = 0; a < S; ++a) s.w[axis][a] = g[axis][a], s.d[axis][a] = g[axis][a] * (T(a) - offset[axis]) - w[axis][a];
-    Bspline<S>::curvatures(offset[axis], s.g[axis]);
-    return s;
-  }
-
   /// Products over the axes but the last, for a row of nodes along that: w of all of them, and with d or g on axis k.
   struct Row {
     T w, d[Dim - 1], g[Dim - 1];

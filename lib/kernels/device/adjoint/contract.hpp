@@ -6,25 +6,114 @@
 
 namespace jaxmpm {
 
-/// Σ over the nodes of a stencil of value × share. The factors of the share at the nodes are those of `s`; the values stand at every
-/// fourth place from the stencil's first node.
-template <bool with_d, bool with_g, int axis = 0, class Sch, class T, int Dim>
-JAXMPM_INLINE T contract(const Factors<Sch>& s, const Share<T, Dim>& q, const T* values) {
-  T sum(0);
-  JAXMPM_UNROLL
-  for (int a = 0; a < Sch::S; ++a) {
-    const T* at = values + 4 * StencilNodes<Sch>::step(axis) * a;
-    if constexpr (axis < Dim - 1) {
-      sum += contract<with_d, with_g, axis + 1>(s, along<axis, with_d, with_g>(s, a, q), at);
-    } else {
-      T given = s.w[axis][a] * q.plain;
-      if constexpr (with_d) given += s.d[axis][a] * q.d[axis];
-      if constexpr (with_g) given += s.g[axis][a] * q.g[axis];
-      sum += given * *at;
+/// Factors along one axis at one node, and their derivatives by X: w' = g, d' = g (X_i − X_p) − w, g'.
+template <class T>
+struct NodeFactors {
+  T w, d, g, dd, gg;
+};
+
+/// Adds to by_x the derivatives by position of Σ_i factor_i · N_i over a stencil. N: values `first` … of the records of an arena's plane,
+/// which the stencil begins at `base`; shares[c] is what goes with value first + c, of the first `plain` of them with the weight alone.
+template <class Sch, bool with_d, bool with_g, int first, int count, int plain = 0>
+class Contraction {
+  using T = typename Sch::T;
+  static constexpr int Dim = Sch::Dim, S = Sch::S, last = Dim - 1;
+  const Factors<Sch>& factors_;
+  const T (&offset_)[Dim];
+  const Share<T, Dim>* shares_;
+  T curvature_[Dim][S];
+
+  /// Σ_c N_c A_c, N_c B_kc and N_c C_kc at a node.
+  struct Node {
+    T a = 0, b[Dim] = {}, c[Dim] = {};
+    JAXMPM_INLINE Node(const Quad<T>& n, const Share<T, Dim>* shares) {
+      for (int v = 0; v < count; ++v) {
+        const T value = n.a[first + v];
+        a += value * shares[v].plain;
+        for (int k = 0; k < Dim && v >= plain; ++k) {
+          if constexpr (with_d) b[k] += value * shares[v].d[k];
+          if constexpr (with_g) c[k] += value * shares[v].g[k];
+        }
+      }
+    }
+  };
+  /// Sums along a row of nodes on the last axis: what goes with w on the axes before (by_z: its derivative by that axis), and what goes
+  /// with d or g on one of them.
+  struct Row {
+    T line = 0, by_z = 0, b[last] = {}, b_by_z[last] = {}, c[last] = {}, c_by_z[last] = {};
+  };
+
+  JAXMPM_INLINE NodeFactors<T> at(int axis, int i) const {
+    const Factors<Sch>& f = factors_;
+    return {f.w[axis][i], f.d[axis][i], f.g[axis][i], f.g[axis][i] * (T(i) - offset_[axis]) - f.w[axis][i], curvature_[axis][i]};
+  }
+  /// The same with an index that is known when it runs: a choice, as an array would have to lie in memory.
+  JAXMPM_INLINE NodeFactors<T> choose(int axis, int i) const {
+    NodeFactors<T> f = at(axis, 0);
+    JAXMPM_UNROLL
+    for (int k = 1; k < S; ++k)
+      if (i == k) f = at(axis, k);
+    return f;
+  }
+
+  JAXMPM_INLINE Row row(const T* nodes) const {
+    Row r;
+    JAXMPM_UNROLL
+    for (int i = 0; i < S; ++i) {
+      const Node n(quad_at(nodes, i), shares_);
+      const NodeFactors<T> z = at(last, i);
+      r.line += z.w * n.a, r.by_z += z.g * n.a;
+      if constexpr (with_d) r.line += z.d * n.b[last], r.by_z += z.dd * n.b[last];
+      if constexpr (with_g) r.line += z.g * n.c[last], r.by_z += z.gg * n.c[last];
+      for (int k = 0; k < last; ++k) {
+        if constexpr (with_d) r.b[k] += z.w * n.b[k], r.b_by_z[k] += z.g * n.b[k];
+        if constexpr (with_g) r.c[k] += z.w * n.c[k], r.c_by_z[k] += z.g * n.c[k];
+      }
+    }
+    return r;
+  }
+  /// Derivatives of w line + d b + g c of an axis: by itself, and of what stands beside its factors.
+  static JAXMPM_INLINE T along(const NodeFactors<T>& f, T line, T b, T c) {
+    T sum = f.w * line;
+    if constexpr (with_d) sum += f.d * b;
+    if constexpr (with_g) sum += f.g * c;
+    return sum;
+  }
+  static JAXMPM_INLINE T along_derived(const NodeFactors<T>& f, T line, T b, T c) {
+    T sum = f.g * line;
+    if constexpr (with_d) sum += f.dd * b;
+    if constexpr (with_g) sum += f.gg * c;
+    return sum;
+  }
+
+ public:
+  JAXMPM_INLINE Contraction(const Factors<Sch>& factors, const T (&offset)[Dim], const Share<T, Dim>* shares)
+      : factors_(factors), offset_(offset), shares_(shares) {
+    for (int axis = 0; axis < Dim; ++axis) Bspline<S>::curvatures(offset[axis], curvature_[axis]);
+  }
+
+  JAXMPM_INLINE void add(const T* plane, int base, T (&by_x)[Dim]) const {
+    for (int i = 0; i < S; ++i) {
+      const NodeFactors<T> x = choose(0, i);
+      const T* layer = plane + 4 * (base + i * StencilNodes<Sch>::step(0));
+      if constexpr (Dim == 2) {
+        const Row r = row(layer);
+        by_x[0] += along_derived(x, r.line, r.b[0], r.c[0]);
+        by_x[1] += along(x, r.by_z, r.b_by_z[0], r.c_by_z[0]);
+      } else {
+        JAXMPM_UNROLL
+        for (int j = 0; j < S; ++j) {
+          const NodeFactors<T> y = at(1, j);
+          const Row r = row(layer + 4 * j * StencilNodes<Sch>::step(1));
+          const T line = along(y, r.line, r.b[1], r.c[1]);  // what goes with w of x
+          by_x[0] += along_derived(x, line, y.w * r.b[0], y.w * r.c[0]);
+          by_x[1] += along(x, along_derived(y, r.line, r.b[1], r.c[1]), y.g * r.b[0], y.g * r.c[0]);
+          by_x[2] += along(x, along(y, r.by_z, r.b_by_z[1], r.c_by_z[1]), y.w * r.b_by_z[0], y.w * r.c_by_z[0]);
+        }
+      }
     }
   }
-  return sum;
-}
+};
 
 /// Derivatives by constants, added up by all teams in a table of doubles: by the model's, then of each body by its law's constants, with
 /// its count of kinks.

@@ -116,20 +116,14 @@ struct GatherAdjoint {
 
   /// The factors follow the particle's place.
   JAXMPM_INLINE void move(std::size_t p, const Cell<Sch>& cell, const Factors<Sch>& factors, const T* arena, const By& by) const {
-    const T* first = arena + 4 * cell.base + 1;
-    for (int axis = 0; axis < Dim; ++axis) {
-      const Factors<Sch> slopes = factors.by(axis, cell.offset);
-      T by_x(0);
-      for (int c = 0; c < Dim; ++c) {
-        by_x += contract<Out::with_d, Out::with_g>(slopes, by.component[c], first + c);
-        if constexpr (Sch::flip) {
-          Share<T, Dim> change{};
-          change.plain = by.change[c];
-          by_x += contract<false, false>(slopes, change, first + Sch::arena_plane + c);
-        }
-      }
-      bars.position(axis, p) += double(by_x);
+    T by_x[Dim] = {};
+    Contraction<Sch, Out::with_d, Out::with_g, 1, Dim>(factors, cell.offset, by.component).add(arena, cell.base, by_x);
+    if constexpr (Sch::flip) {
+      Share<T, Dim> change[Dim];
+      for (int c = 0; c < Dim; ++c) change[c].plain = by.change[c];
+      Contraction<Sch, false, false, 1, Dim>(factors, cell.offset, change).add(arena + Sch::arena_plane, cell.base, by_x);
     }
+    for (int axis = 0; axis < Dim; ++axis) bars.position(axis, p) += double(by_x[axis]);
   }
 
   JAXMPM_INLINE void write(std::size_t p, int c, const By& by) const {

@@ -67,27 +67,25 @@ struct ScatterAdjoint {
   JAXMPM_INLINE void move(std::size_t p, const Cell<Sch>& cell, const Factors<Sch>& factors, const T* arena) const {
     T record[Record::used];
     Gift(law, step).write(particles, p, cell, record);
-    Share<T, Dim> mass{}, share[Dim] = {};
-    mass.plain = record[Dim];
+    Share<T, Dim> shares[1 + Dim];  // of mass and momentum
+    shares[0].plain = record[Dim];
     for (int c = 0; c < Dim; ++c) {
       const T* of = record + Record::first + c * Record::of_component;
-      share[c].plain = of[0];
+      shares[1 + c].plain = of[0];
       for (int k = 0; k < Dim; ++k) {
-        if constexpr (Gift::with_d) share[c].d[k] = of[1 + k];
-        if constexpr (Gift::with_g) share[c].g[k] = of[1 + (Gift::with_d ? Dim : 0) + k];
+        if constexpr (Gift::with_d) shares[1 + c].d[k] = of[1 + k];
+        if constexpr (Gift::with_g) shares[1 + c].g[k] = of[1 + (Gift::with_d ? Dim : 0) + k];
       }
     }
-    const T* first = arena + 4 * cell.base;
-    for (int axis = 0; axis < Dim; ++axis) {
-      const Factors<Sch> slopes = factors.by(axis, cell.offset);
-      T by_x = contract<false, false>(slopes, mass, first);
-      for (int c = 0; c < Dim; ++c) {
-        Share<T, Dim> rest = share[c];
-        if constexpr (Sch::flip) by_x += contract<false, false>(slopes, rest, first + 1 + c), rest.plain = T(0);
-        by_x += contract<Gift::with_d, Gift::with_g>(slopes, rest, first + Gift::full * Sch::arena_plane + 1 + c);
-      }
-      bars.position(axis, p) += double(by_x);
+    T by_x[Dim] = {};
+    if constexpr (Sch::flip) {
+      Contraction<Sch, false, false, 0, 1 + Dim>(factors, cell.offset, shares).add(arena, cell.base, by_x);
+      for (Share<T, Dim>& share : shares) share.plain = T(0);
+      Contraction<Sch, Gift::with_d, Gift::with_g, 1, Dim>(factors, cell.offset, shares + 1).add(arena + Sch::arena_plane, cell.base, by_x);
+    } else {
+      Contraction<Sch, Gift::with_d, Gift::with_g, 0, 1 + Dim, 1>(factors, cell.offset, shares).add(arena, cell.base, by_x);
     }
+    for (int axis = 0; axis < Dim; ++axis) bars.position(axis, p) += double(by_x[axis]);
   }
 
   /// What the derivatives by a particle's shares bring to its fields.
