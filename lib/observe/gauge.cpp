@@ -36,8 +36,9 @@ GaugeSet::GaugeSet(const deck::Deck& deck, const Model& model) {
       for (Problem& problem : problems) problem.pointer = "/gauges/" + name + problem.pointer;
       throw DeckError(problems);
     }
-    needs_ = needs_ | gauge->needs();
-    needs_particles_ = needs_particles_ || gauge->needs_particles();
+    const std::optional<Region> region = gauge->region();
+    if (region) regions_.push_back(*region);
+    if (Look& look = region ? nearby_ : anywhere_; gauge->needs_particles()) look = {true, look.fields | gauge->needs()};
     series_[name].channels = gauge->channels();
     gauges_[name] = std::move(gauge);
   }
@@ -51,14 +52,16 @@ bool GaugeSet::needs_forces() const {
 
 void GaugeSet::measure(const Moment& now, const Solver& solver) {
   if (gauges_.empty()) return;
-  const std::vector<BodySnapshot> bodies = needs_particles_ ? solver.snapshot(needs_, false) : std::vector<BodySnapshot>{};
+  const std::vector<BodySnapshot> all = anywhere_.wanted ? solver.snapshot(anywhere_.fields, false) : std::vector<BodySnapshot>{};
+  const std::vector<BodySnapshot> near = nearby_.wanted ? solver.snapshot_within(regions_, nearby_.fields) : std::vector<BodySnapshot>{};
   const ContactForces forces = needs_forces() ? solver.forces() : ContactForces{};
   const Dissipation dissipation = solver.dissipation();
-  const Scene scene{now, bodies, forces, dissipation};
+  const Scene everywhere{now, all, forces, dissipation}, nearby{now, near, forces, dissipation};
   std::vector<const std::string*> names;
   for (const auto& entry : gauges_) names.push_back(&entry.first);
   std::vector<Sample> samples(names.size());
-  parallel_for_host("jaxmpm::gauges", names.size(), [&](std::size_t k) { samples[k] = read(*names[k], scene); });
+  parallel_for_host("jaxmpm::gauges", names.size(),
+                    [&](std::size_t k) { samples[k] = read(*names[k], gauges_.at(*names[k])->region() ? nearby : everywhere); });
   for (std::size_t k = 0; k < names.size(); ++k)
     for (const double value : samples[k].values)
       if (!std::isfinite(value))
@@ -104,6 +107,12 @@ void GaugeSet::drop_after(std::uint64_t step) {
       series.valid.pop_back();
       series.values.resize(series.values.size() - series.width());
     }
+}
+
+Region around(const deck::Numbers& min, const deck::Numbers& max, double margin) {
+  Region region;
+  for (std::size_t a = 0; a < min.size(); ++a) region.min[a] = min[a] - margin, region.max[a] = max[a] + margin;
+  return region;
 }
 
 Point domain_max(const Model& model) {

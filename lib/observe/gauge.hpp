@@ -42,6 +42,8 @@ class Gauge {
   virtual std::vector<Channel> channels() const = 0;
   virtual FieldSelection needs() const { return {}; }
   virtual bool needs_particles() const { return true; }
+  /// Where the particles that it looks at are, if not anywhere.
+  virtual std::optional<Region> region() const { return std::nullopt; }
   virtual bool needs_forces() const { return false; }
   /// `first` is the gauge's own first reading, null while there is none.
   virtual Sample measure(const Scene& scene, const std::vector<double>* first) const = 0;
@@ -81,8 +83,13 @@ class GaugeSet {
 
   std::map<std::string, std::unique_ptr<Gauge>> gauges_;
   std::map<std::string, GaugeSeries> series_;
-  FieldSelection needs_;
-  bool needs_particles_ = false;
+  /// Gauges that look at particles anywhere, and those that look at regions: what they need.
+  struct Look {
+    bool wanted = false;
+    FieldSelection fields;
+  };
+  Look anywhere_, nearby_;
+  std::vector<Region> regions_;
 };
 
 }  // namespace jaxmpm

@@ -18,6 +18,8 @@ std::unique_ptr<Gauge> make_gauge(const deck::ParticlesGauge& gauge, const Model
 /// of one body alone, or the ground and the volume of that body above it by area; the ground where that body is not.
 std::unique_ptr<Gauge> make_deposit_gauge(const deck::Numbers& at, const Model& model, std::size_t body, deck::ProfileReading reading);
 
+/// The box from min to max, wider by `margin` on all sides, m.
+Region around(const deck::Numbers& min, const deck::Numbers& max, double margin);
 /// Upper ends of the domain, m.
 Point domain_max(const Model& model);
 /// The axis that gravity is most nearly along (the last one without gravity), and +1 or −1: the direction along it that is up.

@@ -33,6 +33,12 @@ class Height : public Gauge {
   }
   std::vector<Channel> channels() const override { return {{"value", "m", {}, {}}}; }
   FieldSelection needs() const override { return selection({"density"}); }
+  std::optional<Region> region() const override {
+    Region column{low_, high_};
+    for (int a = 0; a < dim_; ++a)
+      if (a != up_.axis) column.min[a] = at_[a] - reach * width_, column.max[a] = at_[a] + reach * width_;
+    return column;
+  }
   Sample measure(const Scene& scene, const std::vector<double>*) const override {
     const std::vector<ColumnParticle> column = particles_above(scene);
     if (reads_depth()) return {true, {up_.sign * (ground_ + depth(column))}};

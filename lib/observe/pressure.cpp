@@ -10,6 +10,7 @@ class Pressure : public Gauge {
   Pressure(const deck::PressureGauge& gauge, const Model& model) : at_(gauge.at), dim_(model.dim), width_(model.cell_size) {}
   std::vector<Channel> channels() const override { return {{"value", "Pa", {}, {}}}; }
   FieldSelection needs() const override { return selection({"pressure", "density"}); }
+  std::optional<Region> region() const override { return around(at_, at_, reach * width_); }
   Sample measure(const Scene& scene, const std::vector<double>*) const override {
     double sum = 0, volume = 0;
     for (const BodySnapshot& body : scene.bodies)
@@ -51,7 +52,7 @@ class Pressure : public Gauge {
     double share = 1;
     for (int a = 0; a < dim_; ++a) {
       const double r = (body.position[p * dim_ + a] - at_[a]) / width_;
-      if (!(std::abs(r) < 1.5)) return 0;  // most of them
+      if (!(std::abs(r) < reach)) return 0;  // most of them
       share *= spline(r);
     }
     return share * body.mass[p] / body.density[p];

@@ -17,6 +17,7 @@ class RegionMean : public Gauge {
     return {{"value", field_.unit, names.empty() ? std::vector<std::size_t>{} : std::vector<std::size_t>{names.size()}, names}};
   }
   FieldSelection needs() const override { return selection({field_.name, "density"}); }
+  std::optional<Region> region() const override { return around(min_, max_, reach * width_); }
   Sample measure(const Scene& scene, const std::vector<double>*) const override {
     const std::size_t size = component_count(field_.rank, dim_);
     Sample sample{false, std::vector<double>(size, 0.0)};

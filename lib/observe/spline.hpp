@@ -4,7 +4,10 @@
 
 namespace jaxmpm {
 
-/// Weight at distance r, in widths; its integral over r is 1 and it vanishes beyond 1.5.
+/// Widths beyond which the weight vanishes.
+inline constexpr double reach = 1.5;
+
+/// Weight at distance r, in widths; its integral over r is 1 and it vanishes beyond `reach`.
 inline double spline(double r) {
   r = std::abs(r);
   if (r < 0.5) return 0.75 - r * r;

@@ -230,7 +230,16 @@ template <class T, int Dim>
 std::vector<BodySnapshot> ExplicitStep<T, Dim>::snapshot(const FieldSelection& fields, bool ordered) const {
   std::vector<BodySnapshot> out;
   for (std::size_t b = 0; b < bodies_.size(); ++b)
-    out.push_back(body_snapshot<T, Dim>(model_, model_.bodies[b], *materials_[b], bodies_[b], fields, ordered));
+    out.push_back(body_snapshot<T, Dim>(model_, model_.bodies[b], *materials_[b], bodies_[b], fields, all_slots(bodies_[b], ordered)));
+  return out;
+}
+
+template <class T, int Dim>
+std::vector<BodySnapshot> ExplicitStep<T, Dim>::snapshot_within(const std::vector<Region>& regions, const FieldSelection& fields) const {
+  const std::vector<Slots> slots = slots_within(model_, blocks_, numbers_.drift, regions);
+  std::vector<BodySnapshot> out;
+  for (std::size_t b = 0; b < bodies_.size(); ++b)
+    out.push_back(body_snapshot<T, Dim>(model_, model_.bodies[b], *materials_[b], bodies_[b], fields, slots[b]));
   return out;
 }
 

@@ -7,6 +7,7 @@
 
 #include "core/error.hpp"
 #include "core/parallel_host.hpp"
+#include "kernels/wall_node.hpp"
 #include "solvers/raw_array.hpp"
 
 namespace jaxmpm {
@@ -52,15 +53,40 @@ double stable_step(const Model& model, const MaterialKernels<T, Dim>& materials,
 }
 
 template <class T, int Dim>
-BodySnapshot body_snapshot(const Model& model, const Body& body, const MaterialKernel<T, Dim>& material, const Particles<T, Dim>& p,
-                           const FieldSelection& fields, bool ordered) {
-  const std::size_t n = p.count(), history = std::size_t(material.history_size());
-  std::vector<std::uint32_t> place(n);  // of each storage slot in the snapshot
-  std::iota(place.begin(), place.end(), 0u);
-  if (ordered) {
-    const std::uint32_t first = p.first_id();
-    for (std::size_t a = 0; a < n; ++a) place[a] = p.id[a] - first;
+Slots all_slots(const Particles<T, Dim>& p, bool ordered) {
+  Slots slots(p.count());
+  std::iota(slots.begin(), slots.end(), 0u);
+  if (!ordered) return slots;
+  const std::uint32_t first = p.first_id();
+  for (std::size_t a = 0; a < p.count(); ++a) slots[p.id[a] - first] = std::uint32_t(a);
+  return slots;
+}
+
+template <int Dim>
+std::vector<Slots> slots_within(const Model& model, const Blocks<Dim>& blocks, double drift, const std::vector<Region>& regions) {
+  constexpr int B = BlockShape<Dim, 2>::B;
+  const auto may_hold = [&](const Region& region, const Index<Dim>& first) {
+    for (std::size_t d = 0; d < Dim; ++d) {
+      if (model.is_periodic(int(d))) continue;
+      const double low = (region.min[d] - model.domain_min[d]) / model.cell_size,
+                   high = (region.max[d] - model.domain_min[d]) / model.cell_size;
+      if (high < first[d] - drift || low > first[d] + B + 1 + drift) return false;  // splines shift a block's cells by one node at most
+    }
+    return true;
+  };
+  std::vector<Slots> slots(model.bodies.size());
+  for (const Tile& tile : blocks.tiles) {
+    const Index<Dim> first = first_node<Dim>(blocks.index[tile.block]);
+    if (std::none_of(regions.begin(), regions.end(), [&](const Region& region) { return may_hold(region, first); })) continue;
+    for (std::size_t a = tile.begin; a < tile.end; ++a) slots[tile.body].push_back(std::uint32_t(a));
   }
+  return slots;
+}
+
+template <class T, int Dim>
+BodySnapshot body_snapshot(const Model& model, const Body& body, const MaterialKernel<T, Dim>& material, const Particles<T, Dim>& p,
+                           const FieldSelection& fields, const Slots& slots) {
+  const std::size_t n = slots.size(), history = std::size_t(material.history_size());
   BodySnapshot s;
   const bool stress = fields.stress || fields.pressure;
   s.id.resize(n), s.position.resize(n * Dim), s.mass.resize(n);
@@ -70,8 +96,8 @@ BodySnapshot body_snapshot(const Model& model, const Body& body, const MaterialK
   s.velocity_gradient.resize(fields.velocity_gradient ? n * Dim * Dim : 0);
   s.plastic_strain.resize(fields.plastic_strain ? n : 0), s.strain_energy.resize(fields.energy ? n : 0);
   const double rho0 = std::visit([](const auto& m) { return m.density; }, body.material);
-  parallel_for_host_static("jaxmpm::snapshot", n, [&](std::size_t a) {
-    const std::size_t i = place[a];
+  parallel_for_host_static("jaxmpm::snapshot", n, [&](std::size_t i) {
+    const std::size_t a = slots[i];
     const double e = double(p.compression[a]), mass = double(p.mass[a]), density = rho0 * (1 + e);
     s.id[i] = p.id[a], s.mass[i] = mass, s.volume[i] = mass / density;
     for (std::size_t d = 0; d < Dim; ++d) {
@@ -159,10 +185,13 @@ void check_particles(const Model& model, const Body& body, const Particles<T, Di
   }
 }
 
+template std::vector<Slots> slots_within(const Model&, const Blocks<2>&, double, const std::vector<Region>&);
+template std::vector<Slots> slots_within(const Model&, const Blocks<3>&, double, const std::vector<Region>&);
 template Particles<float, 2> first_particles(const Model&, const Body&, const MaterialKernel<float, 2>&, double&);
 template double stable_step(const Model&, const MaterialKernels<float, 2>&, double);
+template Slots all_slots(const Particles<float, 2>&, bool);
 template BodySnapshot body_snapshot(const Model&, const Body&, const MaterialKernel<float, 2>&, const Particles<float, 2>&,
-                                    const FieldSelection&, bool);
+                                    const FieldSelection&, const Slots&);
 template std::vector<RawArray> save_state(const std::vector<Particles<float, 2>>&, const std::vector<Tile>&,
                                           const std::vector<std::int64_t>&, const StepNumbers&);
 template void restore_state(const std::vector<RawArray>&, std::vector<Particles<float, 2>>&, std::vector<Tile>&, std::vector<std::int64_t>&,
@@ -170,8 +199,9 @@ template void restore_state(const std::vector<RawArray>&, std::vector<Particles<
 template void check_particles(const Model&, const Body&, const Particles<float, 2>&, std::size_t, std::size_t);
 template Particles<float, 3> first_particles(const Model&, const Body&, const MaterialKernel<float, 3>&, double&);
 template double stable_step(const Model&, const MaterialKernels<float, 3>&, double);
+template Slots all_slots(const Particles<float, 3>&, bool);
 template BodySnapshot body_snapshot(const Model&, const Body&, const MaterialKernel<float, 3>&, const Particles<float, 3>&,
-                                    const FieldSelection&, bool);
+                                    const FieldSelection&, const Slots&);
 template std::vector<RawArray> save_state(const std::vector<Particles<float, 3>>&, const std::vector<Tile>&,
                                           const std::vector<std::int64_t>&, const StepNumbers&);
 template void restore_state(const std::vector<RawArray>&, std::vector<Particles<float, 3>>&, std::vector<Tile>&, std::vector<std::int64_t>&,
@@ -179,8 +209,9 @@ template void restore_state(const std::vector<RawArray>&, std::vector<Particles<
 template void check_particles(const Model&, const Body&, const Particles<float, 3>&, std::size_t, std::size_t);
 template Particles<double, 2> first_particles(const Model&, const Body&, const MaterialKernel<double, 2>&, double&);
 template double stable_step(const Model&, const MaterialKernels<double, 2>&, double);
+template Slots all_slots(const Particles<double, 2>&, bool);
 template BodySnapshot body_snapshot(const Model&, const Body&, const MaterialKernel<double, 2>&, const Particles<double, 2>&,
-                                    const FieldSelection&, bool);
+                                    const FieldSelection&, const Slots&);
 template std::vector<RawArray> save_state(const std::vector<Particles<double, 2>>&, const std::vector<Tile>&,
                                           const std::vector<std::int64_t>&, const StepNumbers&);
 template void restore_state(const std::vector<RawArray>&, std::vector<Particles<double, 2>>&, std::vector<Tile>&,
@@ -188,8 +219,9 @@ template void restore_state(const std::vector<RawArray>&, std::vector<Particles<
 template void check_particles(const Model&, const Body&, const Particles<double, 2>&, std::size_t, std::size_t);
 template Particles<double, 3> first_particles(const Model&, const Body&, const MaterialKernel<double, 3>&, double&);
 template double stable_step(const Model&, const MaterialKernels<double, 3>&, double);
+template Slots all_slots(const Particles<double, 3>&, bool);
 template BodySnapshot body_snapshot(const Model&, const Body&, const MaterialKernel<double, 3>&, const Particles<double, 3>&,
-                                    const FieldSelection&, bool);
+                                    const FieldSelection&, const Slots&);
 template std::vector<RawArray> save_state(const std::vector<Particles<double, 3>>&, const std::vector<Tile>&,
                                           const std::vector<std::int64_t>&, const StepNumbers&);
 template void restore_state(const std::vector<RawArray>&, std::vector<Particles<double, 3>>&, std::vector<Tile>&,

@@ -26,10 +26,22 @@ Particles<T, Dim> first_particles(const Model& model, const Body& body, const Ma
 template <class T, int Dim>
 double stable_step(const Model& model, const MaterialKernels<T, Dim>& materials, double fastest);
 
-/// Fields of one body in deck coordinates; `ordered` sorts by id.
+/// Where the particles of a snapshot lie in storage.
+using Slots = std::vector<std::uint32_t>;
+
+/// Those of all particles of a body, in order of ids or as they lie.
+template <class T, int Dim>
+Slots all_slots(const Particles<T, Dim>& particles, bool ordered);
+
+/// Those of each body's particles that may be within regions: of the tiles that a particle there may belong to. `drift`: largest way since
+/// the sort, cells.
+template <int Dim>
+std::vector<Slots> slots_within(const Model& model, const Blocks<Dim>& blocks, double drift, const std::vector<Region>& regions);
+
+/// Fields of some particles of a body in deck coordinates, in the order of their slots.
 template <class T, int Dim>
 BodySnapshot body_snapshot(const Model& model, const Body& body, const MaterialKernel<T, Dim>& material, const Particles<T, Dim>& particles,
-                           const FieldSelection& fields, bool ordered);
+                           const FieldSelection& fields, const Slots& slots);
 
 /// Arrays of a checkpoint, and back. Particles drift after a sort: which tile they belong to is state. restore_state() wants bodies of the
 /// right sizes; throws IoError when arrays are missing or do not fit.

@@ -30,6 +30,11 @@ struct FieldSelection {
        energy = false;
 };
 
+/// A box, m: from min to max along each axis of the model.
+struct Region {
+  Point min{}, max{};
+};
+
 /// Sums since the start of the run, J: dissipation that an energy gauge reports. Zero unless model.account_energy.
 struct Dissipation {
   double plastic = 0, viscous = 0, friction = 0;
@@ -63,6 +68,8 @@ class Solver {
   virtual std::uint64_t particle_count() const = 0;
   /// Fields of every body, in deck order; `ordered` sorts by id, otherwise storage order (a deterministic one).
   virtual std::vector<BodySnapshot> snapshot(const FieldSelection& fields, bool ordered) const = 0;
+  /// The same of all particles within the regions, and maybe of others around them, in storage order: what a look at few places costs.
+  virtual std::vector<BodySnapshot> snapshot_within(const std::vector<Region>& regions, const FieldSelection& fields) const = 0;
   /// Forces are gathered only after this is switched on (it costs a little).
   virtual void record_forces(bool on) = 0;
   virtual ContactForces forces() const = 0;

@@ -59,6 +59,9 @@ class Ballistic : public Solver {
     }
   }
   std::uint64_t particle_count() const override { return x_.size() / 2; }
+  std::vector<BodySnapshot> snapshot_within(const std::vector<Region>&, const FieldSelection& fields) const override {
+    return snapshot(fields, false);
+  }
   std::vector<BodySnapshot> snapshot(const FieldSelection&, bool) const override {
     BodySnapshot s;
     const std::size_t n = particle_count();

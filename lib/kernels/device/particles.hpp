@@ -71,20 +71,27 @@ void mirror(Array& to, const std::string& label, const std::vector<V, A>& from) 
   copy_in(to, 0, from.data(), from.size());
 }
 
+/// Copies the particles order[0], order[1], … one behind the other.
+template <class T, int Dim>
+struct Permute {
+  ParticleFields<T, Dim> from, to;
+  const std::uint32_t* order;
+  int rows;
+  JAXMPM_INLINE void operator()(std::size_t a) const {
+    const std::size_t b = order[a];
+    for (int d = 0; d < Dim; ++d) to.position(d, a) = from.position(d, b);
+    for (int k = 0; k < rows; ++k) to.row(k, a) = from.row(k, b);
+    to.ids[a] = from.ids[b];
+  }
+};
+
 template <class T, int Dim, class Space>
 class DeviceParticles {
  public:
   /// Allocates for the fields of `host` and copies them.
   explicit DeviceParticles(const Particles<T, Dim>& host)
-      : count_(host.count()),
-        stride_((host.count() + 31) / 32 * 32),
-        affine_(host.affine.size()),
-        history_(host.history.size()),
-        gradient_(host.gradient.size()) {
-    rows_ = Dim + 2 + affine_ + history_ + gradient_;
-    positions_ = device_array<double, Space>("jaxmpm::positions", Dim * stride_);
-    reals_ = device_array<T, Space>("jaxmpm::fields", rows_ * stride_);
-    ids_ = device_array<std::uint32_t, Space>("jaxmpm::ids", count_);
+      : count_(host.count()), affine_(host.affine.size()), history_(host.history.size()), gradient_(host.gradient.size()) {
+    allocate();
     spare_positions_ = device_array<double, Space>("jaxmpm::positions", Dim * stride_);
     spare_reals_ = device_array<T, Space>("jaxmpm::fields", rows_ * stride_);
     spare_ids_ = device_array<std::uint32_t, Space>("jaxmpm::ids", count_);
@@ -123,6 +130,15 @@ class DeviceParticles {
     std::size_t k = 0;
     host.for_each_field([&](const std::string&, const auto& field) { copy_field(k++, field); });
   }
+  /// Copies of some particles.
+  Particles<T, Dim> on_host(const Space& space, const std::vector<std::uint32_t>& which) const {
+    DeviceParticles part(*this, which.size());
+    DeviceArray<std::uint32_t, Space> order;
+    mirror(order, "jaxmpm::order", which);
+    parallel_for_on("jaxmpm::select", space, which.size(), Permute<T, Dim>{fields(), part.fields(), order.data(), rows()});
+    space.fence();
+    return part.on_host();
+  }
   Particles<T, Dim> on_host() const {
     Particles<T, Dim> host;
     const auto arrays = [&](std::size_t n) { return std::vector<Array<T>>(n, Array<T>(count_)); };
@@ -139,6 +155,18 @@ class DeviceParticles {
   using Reals = DeviceArray<T, Space>;
   using Ids = DeviceArray<std::uint32_t, Space>;
 
+  /// Room for `count` particles with the same fields; not to be sorted.
+  DeviceParticles(const DeviceParticles& like, std::size_t count)
+      : count_(count), affine_(like.affine_), history_(like.history_), gradient_(like.gradient_) {
+    allocate();
+  }
+  void allocate() {
+    stride_ = (count_ + 31) / 32 * 32;
+    rows_ = Dim + 2 + affine_ + history_ + gradient_;
+    positions_ = device_array<double, Space>("jaxmpm::positions", Dim * stride_);
+    reals_ = device_array<T, Space>("jaxmpm::fields", rows_ * stride_);
+    ids_ = device_array<std::uint32_t, Space>("jaxmpm::ids", count_);
+  }
   /// The part of a copy that is like `table`.
   template <class V, class Bytes, class Table>
   static auto kept(Bytes* bytes, const Table& table) {
@@ -174,7 +202,7 @@ class DeviceParticles {
     else throw std::logic_error("the field table has another order than the device's");
   }
 
-  std::size_t count_, stride_, affine_, history_, gradient_, rows_ = 0;
+  std::size_t count_, stride_ = 0, affine_, history_, gradient_, rows_ = 0;
   Doubles positions_, spare_positions_;
   Reals reals_, spare_reals_;
   Ids ids_, spare_ids_;

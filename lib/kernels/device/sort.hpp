@@ -104,19 +104,6 @@ struct OrderById {
   }
 };
 
-template <class T, int Dim>
-struct Permute {
-  ParticleFields<T, Dim> from, to;
-  const std::uint32_t* order;
-  int rows;
-  JAXMPM_INLINE void operator()(std::size_t a) const {
-    const std::size_t b = order[a];
-    for (int d = 0; d < Dim; ++d) to.position(d, a) = from.position(d, b);
-    for (int k = 0; k < rows; ++k) to.row(k, a) = from.row(k, b);
-    to.ids[a] = from.ids[b];
-  }
-};
-
 /// Where each filled block's particles begin.
 struct Begins {
   const std::uint32_t* start;
@@ -158,8 +145,7 @@ class DeviceSort {
     parallel_for_on("jaxmpm::sort::fill", space, n, device_sort::Fill{slot_.data(), start_.data(), count_.data(), order_.data()});
     const ParticleFields<T, Dim> fields = particles.fields();
     parallel_for_on("jaxmpm::sort::ids", space, slots, device_sort::OrderById{start_.data(), count_.data(), fields.ids, order_.data()});
-    parallel_for_on("jaxmpm::sort::permute", space, n,
-                    device_sort::Permute<T, Dim>{fields, particles.spare(), order_.data(), particles.rows()});
+    parallel_for_on("jaxmpm::sort::permute", space, n, Permute<T, Dim>{fields, particles.spare(), order_.data(), particles.rows()});
     parallel_for_on("jaxmpm::sort::begins", space, filled, device_sort::Begins{start_.data(), cells, begin_.data()});
     space.fence();
     particles.swap();
