@@ -86,6 +86,7 @@ class Run {
         from_(find_start(options, deck_, directory_, backend_name(backend_))),
         model_(build_model(deck_)),
         solver_(make_solver(model_, backend_)),
+        first_count_(solver_->particle_count()),
         recorder_(directory_, deck_, model_, *solver_, backend_name(backend_), quiet),
         simulation_(model_.time, settings(deck_, options), *solver_, recorder_) {
     for (Body& body : model_.bodies) body.initial = {};  // the solver has it now
@@ -132,6 +133,7 @@ class Run {
     json["frames"] = recorder_.frame_count();
     json["total_steps"] = outcome.at.step;
     json["total_seconds"] = outcome.seconds;
+    if (model_.has_open_face()) json["particles_left"] = left();
     json.update(cost_summary(model_, *solver_, backend_, outcome.steps, outcome.seconds - start.seconds, solver_->phase_seconds()));
     json["cpu_seconds"] = outcome.cpu_seconds;
     const OutputSeconds& output = outcome.output;
@@ -139,11 +141,15 @@ class Run {
     write_file(directory_.summary(), json.dump(2) + "\n");
   }
 
+  /// Particles that have passed open faces.
+  std::uint64_t left() const { return first_count_ - solver_->particle_count(); }
+
   int report(const RunOutcome& outcome) const {
     const double rate = static_cast<double>(solver_->particle_count()) * static_cast<double>(outcome.steps);
     spdlog::info("{} at {:.9g} s after {} steps, {} in steps ({:.3g} particle-steps/s), {} frames.", outcome.finished ? "Done" : "Stopped",
                  outcome.at.time, outcome.at.step, duration(outcome.seconds), outcome.seconds > 0 ? rate / outcome.seconds : 0,
                  recorder_.frame_count());
+    if (model_.has_open_face()) spdlog::info("{} of {} particles have left through open faces.", left(), first_count_);
     if (outcome.finished) return static_cast<int>(ExitCode::done);
     spdlog::info("Continue with: jaxmpm run {} --resume auto (and the same -o and --set)", options_.deck);
     return static_cast<int>(ExitCode::stopped);
@@ -156,6 +162,7 @@ class Run {
   std::optional<Checkpoint> from_;
   Model model_;
   std::unique_ptr<Solver> solver_;
+  std::uint64_t first_count_;
   ResultsRecorder recorder_;
   Simulation simulation_;
 };

@@ -20,7 +20,8 @@ inline SignedDistance surface_at_node(const RigidObstacle& obstacle, const Point
   double square = 0;
   const auto dim = std::size_t(model.dim);
   for (std::size_t d = 0; d < dim; ++d) {
-    if (!model.is_periodic(int(d)) && (node[d] == 0 || node[d] == model.cells[d])) on_face = true, surface.normal[d] = 0;
+    const bool low = node[d] == 0, high = node[d] == model.cells[d];
+    if ((low || high) && !model.is_periodic(int(d)) && !model.is_open(int(d), high)) on_face = true, surface.normal[d] = 0;
     square += surface.normal[d] * surface.normal[d];
   }
   constexpr double nothing = 1e-12;

@@ -34,6 +34,7 @@ struct Walls {
     return k;
   }
   JAXMPM_FUNCTION bool periodic(int axis) const { return faces[std::size_t(2 * axis)].kind == deck::ContactKind::periodic; }
+  JAXMPM_FUNCTION bool open(int face) const { return faces[std::size_t(face)].kind == deck::ContactKind::open; }
   JAXMPM_FUNCTION T friction(int face, const std::array<int, Dim>& node) const { return coefficient[segment(face, node)]; }
   /// Whether a node is a ghost, a twin or on a face along some axis: everywhere else the update is plain division.
   JAXMPM_FUNCTION bool near_face(int axis, int node) const {
@@ -109,7 +110,9 @@ class WallUpdate {
   JAXMPM_FUNCTION T sign(int face, int component) const {
     return component == face / 2 || walls_.faces[std::size_t(face)].kind == deck::ContactKind::no_slip ? T(-1) : T(1);
   }
-  JAXMPM_FUNCTION bool on_plane(int axis, int i) const { return !walls_.periodic(axis) && (i == 0 || i == n(axis)); }
+  JAXMPM_FUNCTION bool on_plane(int axis, int i) const {
+    return !walls_.periodic(axis) && ((i == 0 && !walls_.open(2 * axis)) || (i == n(axis) && !walls_.open(2 * axis + 1)));
+  }
   /// Velocity of a face at a node, without what would push the material through another face that the node lies on.
   JAXMPM_FUNCTION V wall_velocity(int face, const Node& node) const {
     V u{};
@@ -149,6 +152,7 @@ class WallUpdate {
   /// Whether the material presses on a face along the lattice line through `node`.
   JAXMPM_FUNCTION bool in_contact(int face, Node node) const {
     if (walls_.faces[std::size_t(face)].always()) return true;
+    if (walls_.open(face)) return false;
     for (int d = 0; d < Dim; ++d) node[std::size_t(d)] = d == face / 2 ? plane(face) : reflect(d, node[std::size_t(d)]);
     const NodeSums<T, Dim> f = raw_(node);
     return f.mass > cut_off_ && f.momentum[face / 2] * inward(face) < 0;

@@ -43,6 +43,11 @@ void check_places(const Deck& deck, const Place& root) {
   }
 }
 
+bool is_open(const Deck& deck, const std::string& face) {
+  const auto wall = deck.walls.find(face);
+  return wall != deck.walls.end() && wall->second.kind == ContactKind::open;
+}
+
 }  // namespace
 
 void check_gauges(const Deck& deck, const Place& root) {
@@ -53,7 +58,16 @@ void check_gauges(const Deck& deck, const Place& root) {
   };
   for (const auto& [name, gauge] : deck.gauges) {
     if (const auto* front = std::get_if<FrontGauge>(&gauge)) refer(name, "body", front->body, names_in(deck.bodies));
-    if (const auto* force = std::get_if<ForceGauge>(&gauge)) refer(name, "obstacle", force->obstacle, names_in(deck.obstacles));
+    if (const auto* force = std::get_if<ForceGauge>(&gauge)) {
+      refer(name, "obstacle", force->obstacle, names_in(deck.obstacles));
+      if (is_open(deck, force->wall))
+        root.key("gauges").key(name).problem("wall", "is an open face: nothing is there that could be pushed");
+    }
+    if (std::holds_alternative<ParticlesGauge>(gauge))
+      for (const auto& [face, wall] : deck.walls)
+        if (wall.kind == ContactKind::open)
+          root.key("gauges").key(name).problem("kind", "follows particles, which may leave through the open face " + face +
+                                                           "; take a region_mean, or read them from the frames");
   }
   check_places(deck, root);
   if (root.given("output") && root.key("output").given("gauge_interval") && !root.given("gauges"))

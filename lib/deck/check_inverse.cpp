@@ -96,6 +96,15 @@ void check_twice(const Json& deck, const std::vector<Unknown>& unknowns, const P
                               pointer + " is an unknown already, by " + place.item(before->second).pointer + "; remove one of them");
 }
 
+/// A gradient follows every particle through every step.
+void check_all_are_followed(const Deck& deck, const Place& root) {
+  if (deck.method.rest) root.reader.problem("/method/rest", "leaves particles out of steps, and a gradient follows every one; remove it");
+  for (const auto& [face, wall] : deck.walls)
+    if (wall.kind == ContactKind::open)
+      root.reader.problem(join(join("/walls", face), "kind"),
+                          "lets particles go, and a gradient follows every one; close the face, or make the domain longer");
+}
+
 }  // namespace
 
 bool is_network(const std::string& pointer) {
@@ -122,6 +131,7 @@ Inverse inverse_of(const Deck& deck) {
 
 void check_inverse(const Deck& deck, const Place& root) {
   if (deck.inverse.empty() || !root.reader.problems().empty()) return;
+  check_all_are_followed(deck, root);
   Inverse inverse;
   const Place place = root.key("inverse");
   described::Codec<Inverse>::read(inverse, place, {});

@@ -144,7 +144,7 @@ struct Body {
   bool by_points() const { return std::holds_alternative<Points>(shape.kind); }  // its particles lie on no lattice
 };
 
-enum class ContactKind { slip, no_slip, separate, friction, periodic /* walls only */ };
+enum class ContactKind { slip, no_slip, separate, friction, periodic, open /* the last two: walls only */ };
 struct Segment {
   double to = 0, coefficient = 0;
 };

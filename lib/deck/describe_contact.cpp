@@ -4,11 +4,8 @@
 namespace jaxmpm::deck {
 
 described::EnumNames<ContactKind> names_of(ContactKind) {
-  return {{ContactKind::slip, "slip"},
-          {ContactKind::no_slip, "no_slip"},
-          {ContactKind::separate, "separate"},
-          {ContactKind::friction, "friction"},
-          {ContactKind::periodic, "periodic"}};
+  return {{ContactKind::slip, "slip"},         {ContactKind::no_slip, "no_slip"},   {ContactKind::separate, "separate"},
+          {ContactKind::friction, "friction"}, {ContactKind::periodic, "periodic"}, {ContactKind::open, "open"}};
 }
 
 std::vector<std::string> face_names(int dimension) {
@@ -28,7 +25,8 @@ void describe(Description<Wall>& d) {
   d.optional("kind", &Wall::kind)
       .help(
           "slip: no flow through it, both ways; no_slip: the material sticks to it; separate and friction: only where the material presses "
-          "on it; periodic: what leaves here enters through the opposite face, which has to be periodic too.");
+          "on it; periodic: what leaves here enters through the opposite face, which has to be periodic too; open: "
+          "nothing is there, as at the edge of a table, and what passes it is taken out of the run.");
   d.optional("coefficient", &Wall::coefficient)
       .from(0)
       .when(
@@ -73,7 +71,7 @@ void describe(Description<Obstacle>& d) {
   d.is("obstacle", "A rigid solid at rest.");
   d.required("name", &Obstacle::name).help("Unique among obstacles.");
   d.required("shape", &Obstacle::shape);
-  d.optional("kind", &Obstacle::kind).help("As for walls; not periodic.");
+  d.optional("kind", &Obstacle::kind).help("As for walls; neither periodic nor open.");
   d.optional("coefficient", &Obstacle::coefficient)
       .from(0)
       .when(
@@ -83,8 +81,8 @@ void describe(Description<Obstacle>& d) {
   d.check({"name"},
           [](const Obstacle& obstacle, const described::Place& place) { described::check_name(obstacle.name, place.key("name")); });
   d.check({"kind"}, [](const Obstacle& obstacle, const described::Place& place) {
-    if (obstacle.kind == ContactKind::periodic)
-      place.problem("kind", "only faces of the domain are periodic; choose slip, no_slip, separate or friction");
+    if (obstacle.kind == ContactKind::periodic || obstacle.kind == ContactKind::open)
+      place.problem("kind", "only faces of the domain are periodic or open; choose slip, no_slip, separate or friction");
     if (obstacle.kind == ContactKind::friction && !place.given("coefficient"))
       place.problem("coefficient", "is missing: kind \"friction\" needs it");
   });

@@ -100,7 +100,7 @@ void describe(Description<ForceGauge>& d) {
 void describe(Description<EnergyGauge>& d) {
   d.is("energy",
        "Kinetic, potential, strain, plastic, viscous, friction and numerical energy; the last is the remainder, and holds the work of "
-       "moving walls, of a body force, and of gravity across periodic faces.",
+       "moving walls, of a body force, and of gravity across periodic faces, and what leaves through open ones.",
        family);
 }
 void describe(Description<MomentumGauge>& d) { d.is("momentum", "Linear momentum of all material.", family); }

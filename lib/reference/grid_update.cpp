@@ -41,7 +41,7 @@ bool ReferenceGridUpdate<Scalar>::is_inside(const Node& node) const {
 template <class Scalar>
 bool ReferenceGridUpdate<Scalar>::in_contact(int face, const Node& node) const {
   const deck::ContactKind kind = model_.faces[face].kind;
-  if (kind == deck::ContactKind::periodic) return false;
+  if (kind == deck::ContactKind::periodic || kind == deck::ContactKind::open) return false;
   if (kind == deck::ContactKind::slip || kind == deck::ContactKind::no_slip) return true;
   Node at = node;
   for (int a = 0; a < model_.dim; ++a) at[a] = at[a] < 0 ? -at[a] : at[a] > last(a) ? 2 * last(a) - at[a] : at[a];
@@ -97,7 +97,8 @@ template <class Scalar>
 Triple<double> ReferenceGridUpdate<Scalar>::wall_velocity(int face, const Node& inner) const {
   Triple<double> u = model_.faces[face].velocity;
   for (int a = 0; a < model_.dim; ++a)
-    if (!model_.is_periodic(a) && (inner[a] == 0 || inner[a] == last(a))) u[a] = 0;
+    if (!model_.is_periodic(a) && ((inner[a] == 0 && !model_.is_open(a, false)) || (inner[a] == last(a) && !model_.is_open(a, true))))
+      u[a] = 0;
   return u;
 }
 

@@ -112,6 +112,17 @@ void average_dilation(const Scalar& mass_cutoff, ReferenceGrid<Scalar>& grid) {
   for (auto& [index, node] : grid) node.dilation = node.mass > mass_cutoff ? node.dilation / node.mass : Scalar(0);
 }
 
+/// A particle that has passed an open face is taken out: it keeps its place there without mass.
+template <class Scalar>
+void release(const Model& model, ReferenceBody<Scalar>& body, std::size_t p) {
+  for (int a = 0; a < model.dim; ++a) {
+    const double x = value_of(body.position[p][a]), last = model.cells[a];
+    const bool low = x < 0 && model.is_open(a, false), high = x > last && model.is_open(a, true);
+    if (!low && !high) continue;
+    body.position[p][a] = Scalar(low ? 0 : last), body.mass[p] = Scalar(0), body.velocity[p] = {};
+  }
+}
+
 template <class Scalar>
 void check_position(const Model& model, const Triple<Scalar>& X, std::size_t body, std::size_t particle) {
   for (int a = 0; a < model.dim; ++a) {
@@ -251,6 +262,7 @@ ReferenceReport<Scalar> reference_step(const Model& model, ReferenceState<Scalar
     ReferenceBody<Scalar>& body = state.bodies[b];
     for (std::size_t p = 0; p < body.mass.size(); ++p) {
       grid_to_particle(model, report.grid, dt, body, p);
+      release(model, body, p);
       check_position(model, body.position[p], b, p);
     }
     model.dim == 2 ? update_stress<Scalar, 2>(model, dt, b, body, report) : update_stress<Scalar, 3>(model, dt, b, body, report);

@@ -74,6 +74,11 @@ struct Model {
   bool account_energy = false;            // an energy gauge asks for dissipation
   std::vector<std::string> notices;       // what seeding wants the user to know
 
+  /// Whether there is nothing at the lower or upper face of an axis.
+  bool is_open(int axis, bool upper) const { return faces[std::size_t(2 * axis + int(upper))].kind == deck::ContactKind::open; }
+  bool has_open_face() const {
+    return std::any_of(faces.begin(), faces.end(), [](const FaceLaw& face) { return face.kind == deck::ContactKind::open; });
+  }
   bool is_periodic(int axis) const { return faces[std::size_t(2 * axis)].kind == deck::ContactKind::periodic; }
 };
 

@@ -66,6 +66,7 @@ void ExplicitStep<T, Dim>::sort(std::vector<std::vector<std::uint32_t>>* orders)
   blocks_.tiles.clear(), tile_key_.clear();
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     wrap(bodies_[b]);
+    if (model_.has_open_face()) remove_leavers(bodies_[b]);
     kernels_.sort(bodies_[b], std::uint32_t(b), extent_, scratch_, blocks_.tiles, tile_key_);
     if (orders) orders->push_back(scratch_.order);
   }
@@ -163,17 +164,32 @@ template <class T, int Dim>
 void ExplicitStep<T, Dim>::collect(double dt) {
   double moved = 0;
   bool sound = true;
-  numbers_.fastest = rest_.fastest(), numbers_.last_dt = dt, numbers_.time += dt;
+  if (!blocks_.tiles.empty()) numbers_.fastest = rest_.fastest();  // else all have left, and the step stays as it was
+  numbers_.last_dt = dt, numbers_.time += dt;
   for (const std::uint32_t t : rest_.moving()) {
     const TileReport& r = reports_[t];
     numbers_.fastest = std::max(numbers_.fastest, r.fastest), moved = std::max(moved, r.displacement);
     numbers_.dissipation.plastic += r.plastic, numbers_.dissipation.viscous += r.viscous;
     sound = sound && r.sound;
   }
-  if (!sound) report_failure();
+  if (!sound && !all_have_left()) report_failure();
   numbers_.drift += moved;
   if (model_.account_energy) numbers_.dissipation.friction += grid_.contact().friction;
   if (rest_.possible() && rest_.learn(reports_, dt, model_.cell_size)) choose_work();
+}
+
+/// Whether what is wrong with tiles is that particles have passed open faces, no more: these are taken out of the run.
+template <class T, int Dim>
+bool ExplicitStep<T, Dim>::all_have_left() {
+  if (!model_.has_open_face()) return false;
+  for (const std::uint32_t t : rest_.moving()) {
+    const Tile& tile = blocks_.tiles[t];
+    if (reports_[t].sound) continue;
+    release_leavers(model_, bodies_[tile.body], tile.begin, tile.end);
+    check_particles<T, Dim>(model_, model_.bodies[tile.body], bodies_[tile.body], tile.begin, tile.end);
+    if (!std::isfinite(reports_[t].fastest)) return false;
+  }
+  return true;
 }
 
 template <class T, int Dim>
@@ -194,7 +210,7 @@ double ExplicitStep<T, Dim>::stable_step() const {
 template <class T, int Dim>
 std::uint64_t ExplicitStep<T, Dim>::particle_count() const {
   std::uint64_t n = 0;
-  for (const auto& p : bodies_) n += p.count();
+  for (const auto& p : bodies_) n += model_.has_open_face() ? all_slots(p, false).size() : p.count();
   return n;
 }
 
@@ -252,7 +268,7 @@ std::vector<RawArray> ExplicitStep<T, Dim>::save() const {
 
 template <class T, int Dim>
 void ExplicitStep<T, Dim>::restore(const std::vector<RawArray>& arrays) {
-  restore_state<T, Dim>(arrays, bodies_, blocks_.tiles, tile_key_, numbers_);
+  restore_state<T, Dim>(arrays, bodies_, blocks_.tiles, tile_key_, numbers_, model_.has_open_face());
   if (rest_.possible()) rest_.restore(arrays, blocks_.tiles, tile_key_);
   rebuild_blocks();
 }

@@ -47,6 +47,7 @@ class ExplicitStep : public Solver {
   void update_grid(double dt);
   void g2p();
   void collect(double dt);
+  bool all_have_left();
   Index<Dim> arena_origin(const Tile& tile) const;
   [[noreturn]] void report_failure() const;
 

@@ -15,6 +15,12 @@ namespace {
 
 std::string field_name(std::size_t body, const std::string& field) { return "body" + std::to_string(body) + "_" + field; }
 
+/// Gives room for so many particles, or takes it.
+template <class T, int Dim>
+void resize(Particles<T, Dim>& particles, std::size_t count) {
+  particles.for_each_field([count](const std::string&, auto& field) { field.resize(count); });
+}
+
 }  // namespace
 
 template <class T, int Dim>
@@ -54,12 +60,17 @@ double stable_step(const Model& model, const MaterialKernels<T, Dim>& materials,
 
 template <class T, int Dim>
 Slots all_slots(const Particles<T, Dim>& p, bool ordered) {
-  Slots slots(p.count());
-  std::iota(slots.begin(), slots.end(), 0u);
-  if (!ordered) return slots;
+  Slots slots;
+  slots.reserve(p.count());
+  for (std::size_t a = 0; a < p.count(); ++a)
+    if (p.mass[a] > T(0)) slots.push_back(std::uint32_t(a));
+  if (!ordered || slots.empty()) return slots;
+  constexpr std::uint32_t none = ~std::uint32_t(0);
   const std::uint32_t first = p.first_id();
-  for (std::size_t a = 0; a < p.count(); ++a) slots[p.id[a] - first] = std::uint32_t(a);
-  return slots;
+  Slots by_id(1 + *std::max_element(p.id.begin(), p.id.end()) - first, none);  // no longer than the body was at first
+  for (const std::uint32_t a : slots) by_id[p.id[a] - first] = a;
+  by_id.erase(std::remove(by_id.begin(), by_id.end(), none), by_id.end());
+  return by_id;
 }
 
 template <int Dim>
@@ -143,9 +154,10 @@ std::vector<RawArray> save_state(const std::vector<Particles<T, Dim>>& bodies, c
 
 template <class T, int Dim>
 void restore_state(const std::vector<RawArray>& arrays, std::vector<Particles<T, Dim>>& bodies, std::vector<Tile>& tiles,
-                   std::vector<std::int64_t>& tile_key, StepNumbers& numbers) {
+                   std::vector<std::int64_t>& tile_key, StepNumbers& numbers, bool may_have_left) {
   std::size_t particles = 0, covered = 0;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
+    if (may_have_left) resize(bodies[b], find_array(arrays, field_name(b, "id")).bytes.size() / sizeof(bodies[b].id[0]));
     bodies[b].for_each_field([&](const std::string& name, auto& field) { unpack_array(arrays, field_name(b, name), field); });
     particles += bodies[b].count();
   }
@@ -163,6 +175,29 @@ void restore_state(const std::vector<RawArray>& arrays, std::vector<Particles<T,
     covered += tile.end - tile.begin;
   }
   if (covered != particles) throw IoError("the tiles of the checkpoint do not cover its particles; it is damaged");
+}
+
+template <class T, int Dim>
+void release_leavers(const Model& model, Particles<T, Dim>& p, std::size_t begin, std::size_t end) {
+  for (std::size_t a = begin; a < end; ++a)
+    for (std::size_t d = 0; d < Dim; ++d) {
+      double& X = p.position[d][a];
+      const double N = model.cells[d];
+      const bool low = X < 0 && model.is_open(int(d), false), high = X > N && model.is_open(int(d), true);
+      if (!low && !high) continue;
+      X = low ? 0 : N, p.mass[a] = T(0);
+      for (auto& v : p.velocity) v[a] = T(0);
+    }
+}
+
+template <class T, int Dim>
+void remove_leavers(Particles<T, Dim>& p) {
+  const Slots there = all_slots(p, false);
+  if (there.size() == p.count()) return;
+  p.for_each_field([&](const std::string&, auto& field) {
+    for (std::size_t a = 0; !field.empty() && a < there.size(); ++a) field[a] = field[there[a]];
+  });
+  resize(p, there.size());
 }
 
 template <class T, int Dim>
@@ -195,7 +230,9 @@ template BodySnapshot body_snapshot(const Model&, const Body&, const MaterialKer
 template std::vector<RawArray> save_state(const std::vector<Particles<float, 2>>&, const std::vector<Tile>&,
                                           const std::vector<std::int64_t>&, const StepNumbers&);
 template void restore_state(const std::vector<RawArray>&, std::vector<Particles<float, 2>>&, std::vector<Tile>&, std::vector<std::int64_t>&,
-                            StepNumbers&);
+                            StepNumbers&, bool);
+template void release_leavers(const Model&, Particles<float, 2>&, std::size_t, std::size_t);
+template void remove_leavers(Particles<float, 2>&);
 template void check_particles(const Model&, const Body&, const Particles<float, 2>&, std::size_t, std::size_t);
 template Particles<float, 3> first_particles(const Model&, const Body&, const MaterialKernel<float, 3>&, double&);
 template double stable_step(const Model&, const MaterialKernels<float, 3>&, double);
@@ -205,7 +242,9 @@ template BodySnapshot body_snapshot(const Model&, const Body&, const MaterialKer
 template std::vector<RawArray> save_state(const std::vector<Particles<float, 3>>&, const std::vector<Tile>&,
                                           const std::vector<std::int64_t>&, const StepNumbers&);
 template void restore_state(const std::vector<RawArray>&, std::vector<Particles<float, 3>>&, std::vector<Tile>&, std::vector<std::int64_t>&,
-                            StepNumbers&);
+                            StepNumbers&, bool);
+template void release_leavers(const Model&, Particles<float, 3>&, std::size_t, std::size_t);
+template void remove_leavers(Particles<float, 3>&);
 template void check_particles(const Model&, const Body&, const Particles<float, 3>&, std::size_t, std::size_t);
 template Particles<double, 2> first_particles(const Model&, const Body&, const MaterialKernel<double, 2>&, double&);
 template double stable_step(const Model&, const MaterialKernels<double, 2>&, double);
@@ -215,7 +254,9 @@ template BodySnapshot body_snapshot(const Model&, const Body&, const MaterialKer
 template std::vector<RawArray> save_state(const std::vector<Particles<double, 2>>&, const std::vector<Tile>&,
                                           const std::vector<std::int64_t>&, const StepNumbers&);
 template void restore_state(const std::vector<RawArray>&, std::vector<Particles<double, 2>>&, std::vector<Tile>&,
-                            std::vector<std::int64_t>&, StepNumbers&);
+                            std::vector<std::int64_t>&, StepNumbers&, bool);
+template void release_leavers(const Model&, Particles<double, 2>&, std::size_t, std::size_t);
+template void remove_leavers(Particles<double, 2>&);
 template void check_particles(const Model&, const Body&, const Particles<double, 2>&, std::size_t, std::size_t);
 template Particles<double, 3> first_particles(const Model&, const Body&, const MaterialKernel<double, 3>&, double&);
 template double stable_step(const Model&, const MaterialKernels<double, 3>&, double);
@@ -225,7 +266,9 @@ template BodySnapshot body_snapshot(const Model&, const Body&, const MaterialKer
 template std::vector<RawArray> save_state(const std::vector<Particles<double, 3>>&, const std::vector<Tile>&,
                                           const std::vector<std::int64_t>&, const StepNumbers&);
 template void restore_state(const std::vector<RawArray>&, std::vector<Particles<double, 3>>&, std::vector<Tile>&,
-                            std::vector<std::int64_t>&, StepNumbers&);
+                            std::vector<std::int64_t>&, StepNumbers&, bool);
+template void release_leavers(const Model&, Particles<double, 3>&, std::size_t, std::size_t);
+template void remove_leavers(Particles<double, 3>&);
 template void check_particles(const Model&, const Body&, const Particles<double, 3>&, std::size_t, std::size_t);
 
 }  // namespace jaxmpm

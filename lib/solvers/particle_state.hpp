@@ -29,7 +29,7 @@ double stable_step(const Model& model, const MaterialKernels<T, Dim>& materials,
 /// Where the particles of a snapshot lie in storage.
 using Slots = std::vector<std::uint32_t>;
 
-/// Those of all particles of a body, in order of ids or as they lie.
+/// Those of all particles of a body, in order of ids or as they lie; without those that have left (mass 0).
 template <class T, int Dim>
 Slots all_slots(const Particles<T, Dim>& particles, bool ordered);
 
@@ -44,13 +44,20 @@ BodySnapshot body_snapshot(const Model& model, const Body& body, const MaterialK
                            const FieldSelection& fields, const Slots& slots);
 
 /// Arrays of a checkpoint, and back. Particles drift after a sort: which tile they belong to is state. restore_state() wants bodies of the
-/// right sizes; throws IoError when arrays are missing or do not fit.
+/// right sizes, except where some particles `may_have_left`; throws IoError when arrays are missing or do not fit.
 template <class T, int Dim>
 std::vector<RawArray> save_state(const std::vector<Particles<T, Dim>>& bodies, const std::vector<Tile>& tiles,
                                  const std::vector<std::int64_t>& tile_key, const StepNumbers& numbers);
 template <class T, int Dim>
 void restore_state(const std::vector<RawArray>& arrays, std::vector<Particles<T, Dim>>& bodies, std::vector<Tile>& tiles,
-                   std::vector<std::int64_t>& tile_key, StepNumbers& numbers);
+                   std::vector<std::int64_t>& tile_key, StepNumbers& numbers, bool may_have_left = false);
+
+/// Takes particles [begin, end) that have passed an open face out of the run: without mass they give nothing to the grid.
+template <class T, int Dim>
+void release_leavers(const Model& model, Particles<T, Dim>& particles, std::size_t begin, std::size_t end);
+/// Removes the particles that have left. The others keep their order.
+template <class T, int Dim>
+void remove_leavers(Particles<T, Dim>& particles);
 
 /// Throws NumericsError when one of particles [begin, end) has left the domain or has a state that is not finite.
 template <class T, int Dim>

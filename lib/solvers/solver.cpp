@@ -49,6 +49,8 @@ void check_backend(const Model& model, Backend backend) {
     throw DeckError("/method/volume_averaging", "a GPU does not average changes of volume; give --backend cpu, or remove it");
   if (backend == Backend::cuda && model.body_force)
     throw DeckError("/body_force", "is evaluated on the CPU alone; give --backend cpu, or remove it");
+  if (backend == Backend::cuda && model.has_open_face())
+    throw DeckError("/walls", "open faces are for the CPU alone; give --backend cpu, or other faces");
   for (int d = 0; backend == Backend::cuda && d < model.dim; ++d)
     if (model.is_periodic(d)) throw DeckError("/walls", "periodic faces are for the CPU alone; give --backend cpu, or other faces");
   if (!has_backend(backend))
@@ -70,6 +72,10 @@ std::unique_ptr<ReversibleSolver> make_reversible_solver(const Model& model, Bac
   check_extent(model);
   if (model.method.rest)
     throw DeckError("/method/rest", "a gradient follows every particle through every step; remove it to compute gradients");
+  if (model.has_open_face())
+    throw DeckError("/walls",
+                    "a gradient follows every particle through every step, and open faces let them go; close them, or make the "
+                    "domain longer");
   check_backend(model, backend);
 #if defined(KOKKOS_ENABLE_CUDA)
   if (backend == Backend::cuda) return make_cuda_reversible_solver(model);

@@ -78,7 +78,8 @@ def outline(shape, directory):
     return []
 
 
-WALL_STYLES = {"slip": dict(color="0.55", lw=1.0), "no_slip": dict(color="k", lw=2.2), "separate": dict(color="tab:blue", lw=1.4), "friction": dict(color="tab:brown", lw=2.2)}
+WALL_STYLES = {"slip": dict(color="0.55", lw=1.0), "no_slip": dict(color="k", lw=2.2), "separate": dict(color="tab:blue", lw=1.4), "friction": dict(color="tab:brown", lw=2.2),
+               "periodic": dict(color="0.55", lw=1.0, ls="--"), "open": dict(color="0.75", lw=1.0, ls=":")}
 
 
 def draw_scene(axes, deck, deck_directory, horizontal=0, vertical=1):

@@ -75,7 +75,9 @@ def draw_gauges(results, names):
     for at, name in zip(axes[:, 0], names):
         time, value = results.gauge(name)
         labels = results.gauge_components(name)
-        for i, column in enumerate(value.reshape(len(time), -1).T):
+        if len(time) == 0:  # nothing was ever there
+            at.text(0.5, 0.5, "no reading", transform=at.transAxes, ha="center", color="0.5")
+        for i, column in enumerate(value.reshape(len(time), -1).T if len(time) else []):
             at.plot(time, column, lw=1.1, label=labels[i] if i < len(labels) else None)
         if labels:
             at.legend(fontsize=7, ncols=4)

@@ -100,6 +100,24 @@ class Results(ProgramTest):
         for a, b in zip(*ends):
             self.assertTrue(np.array_equal(a, b))
 
+    def test_what_passes_an_open_face_leaves_the_run(self):
+        walls = {"x_max": {"kind": "open"}}
+        gauges = {"level": {"kind": "height", "at": [0.1]}, "front": {"kind": "front", "body": "water", "axis": "x"}, "energy": {"kind": "energy"}}
+        deck = self.write(small_deck(walls=walls, gauges=gauges, obstacles=[], time={"end": 1.0}))
+        self.assertIn("have left through open faces", self.run_deck(deck, "one"))
+        with h5py.File(self.scratch / "one" / "results.h5") as index:
+            counts = [len(index[f"frames/{k:06d}/water/id"]) for k in range(len(index["frames"]))]
+        self.assertEqual(counts, sorted(counts, reverse=True))
+        summary = json.loads((self.scratch / "one" / "run.json").read_text())
+        self.assertEqual((summary["particles_left"], summary["particles"]), (576 - counts[-1], counts[-1]))
+        self.assertTrue(0 < counts[-1] < 500, counts)
+        self.run_deck(deck, "resumed", "--set", "/time/end=0.8")
+        self.run_deck(deck, "resumed", "--resume", "auto")
+        self.assertSameResults("one", "resumed")
+        self.run_deck(deck, "empty", "--set", '/walls/y_min={"kind": "open"}', "--set", "/time/end=0.6")  # all fall out
+        with h5py.File(self.scratch / "empty" / "results.h5") as index:
+            self.assertEqual(len(index["frames/000030/water/position"]), 0)
+
     def test_points_of_a_file_run_as_the_lattice_they_were_taken_from(self):
         self.run_deck(self.write(small_deck(), "lattice.json"), "lattice")
         with h5py.File(self.scratch / "lattice" / "results.h5") as index:
