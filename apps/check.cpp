@@ -8,6 +8,8 @@
 #include "core/error.hpp"
 #include "core/provenance.hpp"
 #include "core/runtime.hpp"
+#include "inverse/observations.hpp"
+#include "inverse/unknowns.hpp"
 #include "io/progress.hpp"
 #include "io/results_directory.hpp"
 #include "observe/gauge.hpp"
@@ -44,8 +46,7 @@ void print_bodies(const Model& model, const Solver& solver) {
 }
 
 FirstStep first_step(const Model& model, const Solver& solver) {
-  const double stable = solver.stable_step();
-  return {model.time.step.value_or(stable), stable / model.time.cfl};
+  return {model.time.step.value_or(solver.stable_step()), step_limit(model, solver)};
 }
 
 /// Whether a fixed step is within the limit of the first state.
@@ -55,6 +56,21 @@ bool print_step(const Model& model, const FirstStep& step) {
                            model.time.step ? "fixed" : "automatic", limit, model.time.end / dt,
                            model.time.step ? "" : " or more, as the flow gets faster");
   return dt <= limit;
+}
+
+/// What an inversion of the deck looks for, and at. Throws DeckError where its data do not fit.
+void print_inversion(const deck::Deck& deck, const Model& model) {
+  if (deck.inverse.empty()) return;
+  const Unknowns unknowns(deck);
+  check_bounds(deck, unknowns);
+  std::cout << "inversion       " << unknowns.size() << (unknowns.size() == 1 ? " unknown; " : " unknowns; ");
+  try {
+    const std::vector<double> times = make_observer(deck, model)->times();
+    std::cout << fmt::format("data at {} times, the last at {:.4g} s; a gradient takes about as long as four runs\n", times.size(),
+                             times.empty() ? 0 : times.back());
+  } catch (const IoError& missing) {
+    std::cout << "no data yet\nnote: " << missing.what() << '\n';
+  }
 }
 
 }  // namespace
@@ -76,6 +92,7 @@ int check(const DeckOptions& options) {
   if (good)
     std::cout << fmt::format("estimated time  {} ({:.3g} s a step on {} threads of this machine, without output)\n",
                              duration(cost * model.time.end / step.dt), cost, thread_count());
+  print_inversion(deck, model);
   const ResultsDirectory directory(deck.output.directory);
   std::cout << "results         " << directory.path()
             << (directory.holds_results() ? " (holds results: --overwrite or --resume will be needed)" : "") << '\n';

@@ -69,13 +69,6 @@ RunSettings settings(const deck::Deck& deck, const ResultsOptions& options) {
   return settings;
 }
 
-void warn_of_large_step(const Model& model, const Solver& solver) {
-  const double limit = solver.stable_step() / model.time.cfl;
-  if (model.time.step && *model.time.step > limit)
-    spdlog::warn("/time/step is {:.3g} s, but the first state allows about {:.3g} s: expect the run to become unstable.", *model.time.step,
-                 limit);
-}
-
 class Run {
  public:
   explicit Run(const ResultsOptions& options, bool quiet)
@@ -92,7 +85,7 @@ class Run {
     for (Body& body : model_.bodies) body.initial = {};  // the solver has it now
     for (const std::string& notice : model_.notices) spdlog::info("Note: {}", notice);
     for (const std::string& notice : simulation_.notices()) spdlog::info("Note: {}", notice);
-    warn_of_large_step(model_, *solver_);
+    if (const std::string warning = large_step_warning(model_, *solver_); !warning.empty()) spdlog::warn(warning);
   }
 
   int operator()() {

@@ -37,7 +37,7 @@ struct ObservedData {
 
 /// Rows within from_time … to_time (at most the end of the run), one time in every `every`: the first at or after each multiple counted
 /// from the first one kept. `rows` come in any order and leave in that of times and subjects. DeckError where a row is given twice, where
-/// one lies before the run's start, or where none is left.
+/// one lies before the run's start or, in a CSV without to_time, after its end, or where none is left.
 std::vector<ObservedRow> within_window(std::vector<ObservedRow> rows, const deck::Observed& observed, const ObservationPlace& place);
 
 /// Groups rows into residuals: without `average` each row is its own; with it, those of one subject whose times lie in the same window of

@@ -1,5 +1,8 @@
 #include "solvers/solver.hpp"
 
+#include <iomanip>
+#include <sstream>
+
 #include "core/error.hpp"
 #include "solvers/explicit_step.hpp"
 #include "solvers/reversible_step.hpp"
@@ -66,6 +69,17 @@ std::unique_ptr<Solver> make_solver(const Model& model, Backend backend) {
   if (backend == Backend::cuda) return make_cuda_solver(model);
 #endif
   return model.method.precision == deck::Precision::f32 ? make_host_solver<float>(model) : make_host_solver<double>(model);
+}
+
+double step_limit(const Model& model, const Solver& solver) { return solver.stable_step() / model.time.cfl; }
+
+std::string large_step_warning(const Model& model, const Solver& solver) {
+  const double limit = step_limit(model, solver);
+  if (!model.time.step || *model.time.step <= limit) return {};
+  std::ostringstream text;
+  text << std::setprecision(3) << "/time/step is " << *model.time.step << " s, but the first state allows about " << limit
+       << " s: expect the run to become unstable.";
+  return text.str();
 }
 
 std::unique_ptr<ReversibleSolver> make_reversible_solver(const Model& model, Backend backend) {

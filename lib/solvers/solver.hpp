@@ -91,4 +91,9 @@ enum class Backend { cpu, cuda };
 std::unique_ptr<Solver> make_solver(const Model& model, Backend backend);
 bool has_backend(Backend backend);
 
+/// Limit of the step of a solver's present state, s: that of /time/cfl 1.
+double step_limit(const Model& model, const Solver& solver);
+/// What to say where a fixed step is beyond it; empty where none is.
+std::string large_step_warning(const Model& model, const Solver& solver);
+
 }  // namespace jaxmpm

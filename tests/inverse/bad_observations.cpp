@@ -71,6 +71,7 @@ TEST_CASE("CSV that does not fit") {
   check_refused("time,id,x,y\n0.02,1.5,1,1\n", {{particles(""), file, "line 2"}});
   check_refused("time,id,x,y\n0.02,1,1,1\n0.02,1,2,2\n", {{particles(""), file, "line 3: a second row"}});
   check_refused("time,id,x,y\n-0.02,1,1,1\n", {{particles(""), file, "before the run's start"}});
+  check_refused("time,value\n0.05,1\n0.2,1\n", {{gauge("front"), file, "line 3: the time 0.2 s is after the run's end at 0.1 s"}});
   check_refused("time,id,x,y,sigma\n0.02,1,1,1,0\n", {{particles(""), file, "line 2: sigma"}});
   check_refused("time,id,x,y,good\n0.02,1,1,1,2\n", {{particles(R"(, "mask": "good")"), file, "line 2: the mask column"}});
   check_refused("time,value\n0.2,1\n", {{gauge("front"), file, "all rows (0.2 s to 0.2 s) lie after 0.1 s"}});

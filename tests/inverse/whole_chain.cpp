@@ -38,7 +38,7 @@ const char* const slumping = R"deck({
 
 TEST_CASE("the loss of a deck's observations by numbers of the deck") {
   const test::Folder folder;
-  folder.file("p.csv", "time,id,x,y\n0.01,30,0.1,0.1\n0.02,31,0.3,0.2\n0.0401,32,0,0\n0.04,95,0.3,0.1\n");
+  folder.file("p.csv", "time,id,x,y\n0.01,30,0.1,0.1\n0.02,31,0.3,0.2\n0.04,95,0.3,0.1\n");
   folder.file("front.csv", "time,value\n0.01,0.42\n0.03,0.46\n");
   folder.file("level.csv", "time,value\n0.02,0.3\n");
   folder.file("probe.csv", "time,value,sigma\n0.02,2000,2\n0.03,1500,1\n");
