@@ -7,7 +7,8 @@ if("CUDA" IN_LIST Kokkos_DEVICES)
   endif()
   unset(CMAKE_CXX_COMPILER_LAUNCHER)  # ccache takes the wrapper for a host compiler
   add_compile_options(--expt-relaxed-constexpr  # std::array in kernels
-                      "SHELL:-Xcudafe --diag_suppress=177")  # unused variables of discarded branches; g++ itself says what matters
+                      "SHELL:-Xcudafe --diag_suppress=177"  # unused variables of discarded branches; g++ itself says what matters
+                      "SHELL:-Xcudafe --diag_error=20011" "SHELL:-Xcudafe --diag_error=20014")  # calls of functions that a device does not have
 endif()
 
 # Sources of a pattern that only CUDA builds have.

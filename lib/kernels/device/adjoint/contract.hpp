@@ -121,8 +121,8 @@ struct ConstantBars {
   static constexpr int gravity = 0, damping = 3, flip_fraction = 4, wall_velocity = 5, segment = wall_velocity + 18;
   static constexpr int of_body = MaterialReport::most_constants + 1, kinks = MaterialReport::most_constants;
   int segments, obstacles;
-  int obstacle() const { return segment + segments; }
-  int body(std::size_t b) const { return obstacle() + obstacles + of_body * int(b); }
+  JAXMPM_FUNCTION int obstacle() const { return segment + segments; }
+  JAXMPM_FUNCTION int body(std::size_t b) const { return obstacle() + obstacles + of_body * int(b); }
 };
 
 /// One thread's share of a body's.
