@@ -2,8 +2,8 @@
 // round-off, and checkpoints that either continues.
 #include <catch2/catch.hpp>
 
+#include "device_scenes.hpp"
 #include "kernels/device/scheme_impl.hpp"
-#include "scenes.hpp"
 #include "solvers/device_step_impl.hpp"
 #include "solvers/explicit_step.hpp"
 
@@ -51,17 +51,6 @@ double difference(const ContactForces& a, const ContactForces& b) {
 
 double total(const Dissipation& d) { return d.plastic + d.viscous + d.friction; }
 
-template <class Sch>
-Model scene(const deck::Material& first, const deck::Material& second, deck::ContactKind kind) {
-  deck::Method method;
-  method.transfer = Sch::transfer, method.gradient = Sch::mls ? deck::GradientForm::mls : deck::GradientForm::spline;
-  method.basis = Sch::S == 2 ? deck::Basis::linear : (Sch::S == 3 ? deck::Basis::quadratic : deck::Basis::cubic);
-  method.precision = sizeof(typename Sch::T) == 4 ? deck::Precision::f32 : deck::Precision::f64;
-  Model model = busy_scene(Sch::Dim, method, first, second, kind);
-  model.account_energy = model.record_velocity_gradient = true;
-  return model;
-}
-
 /// Steps both steppers, through several sorts of each, and compares all that they show.
 template <class Sch>
 void compare(const Model& model) {
@@ -88,53 +77,27 @@ void compare(const Model& model) {
   CHECK(difference(device, host) == 0);
 }
 
-template <class Sch>
-void compare(const deck::Material& first, const deck::Material& second, deck::ContactKind kind) {
-  compare<Sch>(scene<Sch>(first, second, kind));
-}
+const auto compare_scene = [](auto scheme, Model model) {
+  model.account_energy = model.record_velocity_gradient = true;
+  compare<decltype(scheme)>(model);
+};
 
-template <class T, int Dim, int S, deck::Transfer transfer, bool mls = false>
-using S_ = Scheme<T, Dim, S, transfer, mls>;
+using Apic = Scheme<double, 2, 3, deck::Transfer::apic, false>;
 
 }  // namespace
 
-using Kind = deck::ContactKind;
-using Transfer = deck::Transfer;
-
-TEST_CASE("device stepper agrees with the host's in 2D") {
-  SECTION("APIC, quadratic, friction") { compare<S_<double, 2, 3, Transfer::apic>>(water(), sand(), Kind::friction); }
-  SECTION("FLIP, quadratic, friction") { compare<S_<double, 2, 3, Transfer::flip>>(water(2), sand(), Kind::friction); }
-  SECTION("TPIC, linear, no_slip") { compare<S_<double, 2, 2, Transfer::tpic>>(water(), deck::NeoHookean{1000, 1e5, 0.3}, Kind::no_slip); }
-  SECTION("PIC, cubic, mls, slip") {
-    compare<S_<double, 2, 4, Transfer::pic, true>>(sand(), deck::LinearElastic{1000, 1e5, 0.3}, Kind::slip);
-  }
-}
-
-TEST_CASE("device stepper agrees with the host's in 3D") {
-  SECTION("APIC, quadratic, mls, friction") { compare<S_<double, 3, 3, Transfer::apic, true>>(water(), sand(), Kind::friction); }
-  SECTION("FLIP, cubic, separate") { compare<S_<double, 3, 4, Transfer::flip>>(water(2), sand(), Kind::separate); }
-  SECTION("APIC, quadratic, single precision") { compare<S_<float, 3, 3, Transfer::apic>>(water(), sand(), Kind::friction); }
-}
-
-TEST_CASE("device stepper agrees with the host's where walls move and motion is damped") {
-  using Sch = S_<double, 2, 3, Transfer::flip>;
-  for (const Kind kind : {Kind::no_slip, Kind::friction}) {
-    Model model = driven(scene<Sch>(water(2), sand(), kind));
-    model.body_force = nullptr;  // the host's alone
-    compare<Sch>(model);
-  }
-}
+TEST_CASE("device stepper agrees with the host's in 2D") { for_each_device_scene_2d(compare_scene); }
+TEST_CASE("device stepper agrees with the host's in 3D") { for_each_device_scene_3d(compare_scene); }
+TEST_CASE("device stepper agrees with the host's where walls move and motion is damped") { for_each_driven_device_scene(compare_scene); }
 
 TEST_CASE("device stepper names the particle that leaves the domain") {
-  using Sch = S_<double, 2, 3, Transfer::apic>;
-  const Model model = scene<Sch>(water(), sand(), Kind::slip);
-  DeviceStep<double, 2, Host> device(model, device_detail::scheme_of<Sch, Host>());
+  const Model model = device_scene<Apic>(water(), sand(), deck::ContactKind::slip);
+  DeviceStep<double, 2, Host> device(model, device_detail::scheme_of<Apic, Host>());
   CHECK_THROWS_WITH(device.step(0.5), Catch::Contains("particle ") && Catch::Contains("has left the domain"));
 }
 
 TEST_CASE("device stepper follows particles that cross several blocks in a step") {
-  using Sch = S_<double, 2, 3, Transfer::apic>;
-  Model model = scene<Sch>(water(), sand(), Kind::slip);
+  Model model = device_scene<Apic>(water(), sand(), deck::ContactKind::slip);
   model.cells = {80, 20, 1}, model.gravity = {}, model.obstacles.clear(), model.bodies.resize(1);
   BodyState& initial = model.bodies[0].initial;
   const double dt = 1e-4;
@@ -143,7 +106,7 @@ TEST_CASE("device stepper follows particles that cross several blocks in a step"
     initial.compression[p] = 0;
   }
   ExplicitStep<double, 2> host(model);
-  DeviceStep<double, 2, Host> device(model, device_detail::scheme_of<Sch, Host>());
+  DeviceStep<double, 2, Host> device(model, device_detail::scheme_of<Apic, Host>());
   for (int k = 0; k < 3; ++k) {
     host.step(dt), device.step(dt);  // 20 cells, two blocks and a half
     const BodySnapshot a = device.snapshot(all_fields, true).front(), b = host.snapshot(all_fields, true).front();

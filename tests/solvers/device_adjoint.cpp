@@ -2,8 +2,8 @@
 // gradients to round-off.
 #include <catch2/catch.hpp>
 
+#include "device_scenes.hpp"
 #include "kernels/device/adjoint/scheme_impl.hpp"
-#include "scenes.hpp"
 #include "solvers/device_reversible_step_impl.hpp"
 #include "solvers/reversible_step.hpp"
 
@@ -13,15 +13,6 @@ namespace {
 
 constexpr int steps = 40;
 constexpr double dt = 2e-4;
-
-template <class Sch>
-Model scene(const deck::Material& first, const deck::Material& second, deck::ContactKind kind) {
-  deck::Method method;
-  method.transfer = Sch::transfer, method.gradient = Sch::mls ? deck::GradientForm::mls : deck::GradientForm::spline;
-  method.basis = Sch::S == 2 ? deck::Basis::linear : (Sch::S == 3 ? deck::Basis::quadratic : deck::Basis::cubic);
-  method.precision = sizeof(typename Sch::T) == 4 ? deck::Precision::f32 : deck::Precision::f64;
-  return busy_scene(Sch::Dim, method, first, second, kind);
-}
 
 /// A loss that asks for every field of every particle, with random weights of about the fields' own size.
 SnapshotGradient random_loss(const Model& model, unsigned seed) {
@@ -119,41 +110,12 @@ void compare(const Model& model) {
   if (sizeof(T) == 8) CHECK(device_kinks == host_kinks);
 }
 
-template <class Sch>
-void compare(const deck::Material& first, const deck::Material& second, deck::ContactKind kind) {
-  compare<Sch>(scene<Sch>(first, second, kind));
-}
-
-template <class T, int Dim, int S, deck::Transfer transfer, bool mls = false>
-using S_ = Scheme<T, Dim, S, transfer, mls>;
+const auto compare_scene = [](auto scheme, const Model& model) { compare<decltype(scheme)>(model); };
 
 }  // namespace
 
-using Kind = deck::ContactKind;
-using Transfer = deck::Transfer;
-
-TEST_CASE("the adjoint on a device agrees with the host's in 2D") {
-  SECTION("APIC, quadratic, friction") { compare<S_<double, 2, 3, Transfer::apic>>(water(), sand(), Kind::friction); }
-  SECTION("FLIP, quadratic, friction") { compare<S_<double, 2, 3, Transfer::flip>>(water(2), sand(), Kind::friction); }
-  SECTION("TPIC, linear, no_slip") { compare<S_<double, 2, 2, Transfer::tpic>>(water(), deck::NeoHookean{1000, 1e5, 0.3}, Kind::no_slip); }
-  SECTION("PIC, cubic, mls, slip") {
-    compare<S_<double, 2, 4, Transfer::pic, true>>(sand(), deck::LinearElastic{1000, 1e5, 0.3}, Kind::slip);
-  }
-}
-
-TEST_CASE("the adjoint on a device agrees with the host's in 3D") {
-  SECTION("APIC, quadratic, mls, friction") { compare<S_<double, 3, 3, Transfer::apic, true>>(water(), sand(), Kind::friction); }
-  SECTION("FLIP, cubic, separate") {
-    compare<S_<double, 3, 4, Transfer::flip>>(water(2), deck::NeoHookean{1000, 1e5, 0.3}, Kind::separate);
-  }
-  SECTION("APIC, quadratic, single precision") { compare<S_<float, 3, 3, Transfer::apic>>(water(), sand(), Kind::friction); }
-}
-
+TEST_CASE("the adjoint on a device agrees with the host's in 2D") { for_each_device_scene_2d(compare_scene); }
+TEST_CASE("the adjoint on a device agrees with the host's in 3D") { for_each_device_scene_3d(compare_scene); }
 TEST_CASE("the adjoint on a device agrees with the host's where walls move and motion is damped") {
-  using Sch = S_<double, 2, 3, Transfer::flip>;
-  for (const Kind kind : {Kind::no_slip, Kind::friction}) {
-    Model model = driven(scene<Sch>(water(2), sand(), kind));
-    model.body_force = nullptr;  // the host's alone
-    compare<Sch>(model);
-  }
+  for_each_driven_device_scene(compare_scene);
 }
