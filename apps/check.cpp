@@ -58,7 +58,7 @@ bool print_step(const Model& model, const FirstStep& step) {
   return dt <= limit;
 }
 
-/// What an inversion of the deck looks for, and at. Throws DeckError where its data do not fit.
+/// What an inversion of the deck looks for, and at. Data that are missing, or of another form of the deck, are no error of the deck.
 void print_inversion(const deck::Deck& deck, const Model& model) {
   if (deck.inverse.empty()) return;
   const Unknowns unknowns(deck);
@@ -68,8 +68,8 @@ void print_inversion(const deck::Deck& deck, const Model& model) {
     const std::vector<double> times = make_observer(deck, model)->times();
     std::cout << fmt::format("data at {} times, the last at {:.4g} s; a gradient takes about as long as four runs\n", times.size(),
                              times.empty() ? 0 : times.back());
-  } catch (const IoError& missing) {
-    std::cout << "no data yet\nnote: " << missing.what() << '\n';
+  } catch (const Error& error) {
+    std::cout << "not to be run yet:\nnote: " << error.what() << '\n';
   }
 }
 
