@@ -82,8 +82,8 @@ void RunObjective::renew_steps(const Values& values) {
   if (!steps_vary() && !steps_.dt.empty()) return;
   const Model model = build_model(with_values(deck_, values), values);
   const std::size_t before = steps_.dt.size();
-  if (const std::string warning = before == 0 ? large_step_warning(model, *make_solver(model, backend_)) : ""; !warning.empty())
-    spdlog::warn(warning);
+  if (before == 0 && model.time.step)  // an automatic step is never too long
+    if (const std::string warning = large_step_warning(model, *make_solver(model, backend_)); !warning.empty()) spdlog::warn(warning);
   steps_ = record_run(model, backend_, *observer_, stop_);
   if (before > 0 && steps_.dt.size() != before) spdlog::info("Time steps renewed: {}, before {}.", steps_.dt.size(), before);
 }

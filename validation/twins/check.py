@@ -64,9 +64,9 @@ def invert(check, name, case, data):
     out = check.out / f"{name}_{case}"
     observation = [{"kind": "particles", "body": BODY[name], "field": "position", "file": str(data)}]
     deck = pathlib.Path(check.folder).parents[1] / "inputs" / f"invert_{name}.json"
-    done = out / "inversion.json"
-    if check.reuse and done.is_file() and json.loads(done.read_text())["stopped"] in ("converged", "iterations", "stalled"):
-        return estimates(done)
+    result = out / "inversion.json"
+    if check.reuse and result.is_file() and json.loads(result.read_text())["stopped"] in ("converged", "iterations", "stalled"):
+        return estimates(result)
     shutil.rmtree(out, ignore_errors=True)
     words = [str(check.program), "invert", str(deck), "-o", str(out), "--threads", "1", "-q"]
     for pointer, value in {**settings(check, name), "/inverse/observations": observation, "/inverse/optimizer": METHOD}.items():
@@ -74,7 +74,7 @@ def invert(check, name, case, data):
     done = subprocess.run(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
     if done.returncode:
         sys.exit(f"  {name}, {case}: exit {done.returncode}\n{done.stdout}")
-    return estimates(out / "inversion.json")
+    return estimates(result)
 
 
 def main():
