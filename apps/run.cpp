@@ -59,6 +59,15 @@ void adopt_frames(const ResultsOptions& options, const ResultsDirectory& directo
   directory.adopt_frames(ResultsDirectory(home.string()), from.frames.size());
 }
 
+/// Says which of a checkpoint's frames the results go without.
+void warn_of_missing_frames(const ResultsDirectory& directory, const Checkpoint& from) {
+  if (const std::size_t missing = directory.missing_frames(from.frames.size()))
+    spdlog::warn(
+        "{} of the {} frames before the checkpoint are in neither its directory nor '{}': the results go without them. "
+        "To have them, put frames/ and vtk/ of that run beside the checkpoint and resume into another directory (-o).",
+        missing, from.frames.size(), directory.path());
+}
+
 RunSettings settings(const deck::Deck& deck, const ResultsOptions& options) {
   RunSettings settings;
   settings.frame_interval = deck.output.interval;
@@ -112,6 +121,7 @@ class Run {
     directory_.prepare(deck_.output.formats);
     if (from_) {
       adopt_frames(options_, directory_, *from_);
+      warn_of_missing_frames(directory_, *from_);
       recorder_.resume(*from_);
       spdlog::info("Resumed at {:.9g} s, step {}.", from_->at.time, from_->at.step);
     } else directory_.clear();

@@ -22,6 +22,9 @@ constexpr double unit = 1.0 / (1 << 17);
 constexpr double unacceptable = 1e30;
 /// Evaluations after which steps that vary are renewed.
 constexpr int evaluations_of_a_leg = 20;
+/// Evaluations in a row that may pass without a lower loss. A line search takes a handful; beyond that the loss only goes up and down by
+/// rounding, as it does early in single precision.
+constexpr int most_in_vain = 10;
 
 /// One call of NLopt: from a point, with the steps of its start.
 class Leg {
@@ -44,6 +47,7 @@ class Leg {
     const nlopt_result result = nlopt_optimize(nlopt_.get(), w.data(), &value);
     if (failure_) std::rethrow_exception(failure_);
     if (result == NLOPT_OUT_OF_MEMORY) throw std::bad_alloc();
+    if (in_vain_ == most_in_vain) return Ending::stalled;
     if (result == NLOPT_FORCED_STOP || stopped_) return Ending::iterations;
     return result > 0 ? Ending::converged : Ending::stalled;
   }
@@ -66,7 +70,7 @@ class Leg {
     Leg& self = *static_cast<Leg*>(leg);
     std::fill(gradient, gradient + n, 0.0);
     try {
-      if (!self.failure_ && self.left_ > 0) return self.evaluate(Variables(w, w + n), gradient);
+      if (!self.failure_ && self.left_ > 0 && self.in_vain_ < most_in_vain) return self.evaluate(Variables(w, w + n), gradient);
       self.stopped_ = true;
     } catch (const NumericsError&) {
       if (!self.started_) self.failure_ = std::current_exception();
@@ -82,6 +86,7 @@ class Leg {
     for (std::size_t i = 0; i < u.size(); ++i) u[i] *= unit * space.scale[i];
     u = space.projected(std::move(u));  // scaling there and back may lead out of a bound by rounding
     --left_;
+    ++in_vain_;
     const LossFunction::Sample sample = loss_.gradient(u);
     for (std::size_t i = 0; i < u.size(); ++i) gradient[i] = sample.gradient[i] * unit * space.scale[i];
     if (factor_ == 0) {
@@ -94,6 +99,7 @@ class Leg {
     if (!started_ || sample.loss < best_loss_) {
       best_ = std::move(u);
       best_loss_ = sample.loss;
+      in_vain_ = 0;
     }
     started_ = true;
     return factor_ * sample.loss;
@@ -105,8 +111,9 @@ class Leg {
   LossFunction& loss_;
   std::unique_ptr<std::remove_pointer_t<nlopt_opt>, Destroy> nlopt_;
   Variables best_;
-  double factor_;  // on the loss; 0: to be chosen
-  int left_;       // evaluations
+  double factor_;    // on the loss; 0: to be chosen
+  int left_;         // evaluations
+  int in_vain_ = 0;  // evaluations since the last lower loss
   double first_loss_ = 0, best_loss_ = 0;
   bool started_ = false, stopped_ = false;
   std::exception_ptr failure_;

@@ -91,6 +91,13 @@ void ResultsDirectory::adopt_frames(const ResultsDirectory& from, std::size_t co
   }
 }
 
+std::size_t ResultsDirectory::missing_frames(std::size_t count) const {
+  const auto missing = [](const std::string& file) { return fs::exists(fs::path(file).parent_path()) && !fs::exists(file); };
+  std::size_t found = 0;
+  for (std::size_t n = 0; n < count; ++n) found += missing(frame(n)) || missing(vtk_frame(n));
+  return found;
+}
+
 void ResultsDirectory::drop_frames_from(std::size_t first) const {
   for (const std::string& file : frame_files(first)) remove_file(file);
 }

@@ -27,6 +27,8 @@ class ResultsDirectory {
   void clear() const;
   /// Copies those of the first `count` frames that are missing here from another results directory. Throws IoError.
   void adopt_frames(const ResultsDirectory& from, std::size_t count) const;
+  /// How many of the first `count` frames are not there, in a format whose folder is.
+  std::size_t missing_frames(std::size_t count) const;
   /// Removes frames from number `first` on, of both formats.
   void drop_frames_from(std::size_t first) const;
 

@@ -156,6 +156,16 @@ TEST_CASE("Badly scaled losses do not throw L-BFGS off") {
   }
 }
 
+TEST_CASE("L-BFGS ends where the loss only goes up and down by rounding") {
+  // As a run in single precision: what it reads jumps by 1e-7 of itself, while its gradient is exact.
+  LeastSquares grainy(
+      {{0.1}, {0}, {5}, {5}}, [](const Variables& u) { return std::vector<double>{1e-7 * std::sin(1e9 * u[0]) + u[0] - 2}; },
+      [](const Variables&) { return std::vector<std::vector<double>>{{1}}; });
+  CHECK(minimise(deck::Lbfgs{200, 10, {}}, grainy) != Ending::iterations);
+  CHECK(grainy.best[0] == Approx(2).margin(1e-6));
+  CHECK(grainy.evaluations <= 30);
+}
+
 TEST_CASE("L-BFGS goes on after unknowns that the data say much about to those they say little about") {
   // As friction near the far end of a flow: at the start its derivative is some 1e-9 of the others'.
   const Variables truth{0.5, 0.2}, weight{1e3, 1e-2};

@@ -99,6 +99,15 @@ class Resume(ProgramTest):
         self.assertSameResults("whole", "second")
         self.run_deck(deck, "second", "--resume", "first/checkpoint.h5", code=IO)
 
+    def test_frames_that_are_not_beside_the_checkpoint_are_told_of(self):
+        deck = self.long_deck(time={"end": 0.06})
+        self.run_deck(deck, "first", "--set", "/time/end=0.04")
+        (self.scratch / "alone").mkdir()
+        (self.scratch / "first/checkpoint.h5").rename(self.scratch / "alone/checkpoint.h5")
+        said = self.run_deck(deck, "second", "--resume", "alone/checkpoint.h5")
+        self.assertRegex(said, r"([1-9]) of the \1 frames before the checkpoint are in neither")
+        self.assertNotIn("frames before the checkpoint", self.run_deck(deck, "whole"))
+
     def test_nothing_to_resume_starts_at_the_beginning(self):
         deck = self.long_deck(time={"end": 0.05})
         self.assertIn("no checkpoint", self.run_deck(deck, "out", "--resume", "auto"))
