@@ -1,11 +1,11 @@
 // jaxmpm bench: the cost of steps alone, without output, after a warm-up; and of a gradient over as many.
-#include <chrono>
 #include <iostream>
 #include <memory>
 
 #include "commands.hpp"
 #include "core/error.hpp"
 #include "core/runtime.hpp"
+#include "core/stopwatch.hpp"
 #include "inverse/differentiated_run.hpp"
 #include "inverse/run_objective.hpp"
 #include "io/summary.hpp"
@@ -95,9 +95,9 @@ nlohmann::ordered_json measure(const BenchOptions& options) {
   std::vector<double> dt = take(*solver, model.time, options.warm_up);
   const PhaseSeconds before = solver->phase_seconds();
   const double cpu_before = processor_seconds();
-  const auto begin = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   const std::vector<double> measured = take(*solver, model.time, options.steps);
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const double seconds = watch.seconds();
   const double cpu = processor_seconds() - cpu_before;
   nlohmann::ordered_json result = cost_summary(model, *solver, backend, options.steps, seconds, solver->phase_seconds() - before);
   result["cpu_seconds"] = cpu;

@@ -1,13 +1,13 @@
 // jaxmpm check: everything wrong with a deck or, when nothing is, what running it will take.
 #include <spdlog/fmt/fmt.h>
 
-#include <chrono>
 #include <iostream>
 
 #include "commands.hpp"
 #include "core/error.hpp"
 #include "core/provenance.hpp"
 #include "core/runtime.hpp"
+#include "core/stopwatch.hpp"
 #include "inverse/observations.hpp"
 #include "inverse/unknowns.hpp"
 #include "io/progress.hpp"
@@ -25,13 +25,13 @@ double measure_step(Solver& solver, const deck::Time& time) {
   constexpr double long_enough = 2;  // s
   const auto step = [&] { solver.step(time.step ? *time.step : solver.stable_step()); };
   step();  // sorts, allocates
-  const auto begin = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   double seconds = 0;
   int steps = 0;
   while (steps < most_steps && seconds < long_enough) {
     step();
     ++steps;
-    seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    seconds = watch.seconds();
   }
   return seconds / steps;
 }
@@ -58,11 +58,24 @@ bool print_step(const Model& model, const FirstStep& step) {
   return dt <= limit;
 }
 
+/// Single numbers with where their search starts; of more than a screenful the first.
+void print_unknowns(const Unknowns& unknowns) {
+  constexpr int most = 20;
+  int shown = 0;
+  for (const VariableBlock& block : unknowns.blocks()) {
+    if (block.count > 1 || shown == most) continue;
+    ++shown;
+    const double start = unknowns.number(block.first, unknowns.space().start[block.first]);
+    for (const std::string& pointer : block.pointers) std::cout << fmt::format("unknown         {} from {:.6g}\n", pointer, start);
+  }
+}
+
 /// What an inversion of the deck looks for, and at. Data that are missing, or of another form of the deck, are no error of the deck.
 void print_inversion(const deck::Deck& deck, const Model& model) {
   if (deck.inverse.empty()) return;
   const Unknowns unknowns(deck);
   check_bounds(deck, unknowns);
+  print_unknowns(unknowns);
   std::cout << "inversion       " << unknowns.size() << (unknowns.size() == 1 ? " unknown; " : " unknowns; ");
   try {
     const std::vector<double> times = make_observer(deck, model)->times();

@@ -1,5 +1,4 @@
 // jaxmpm invert: finds the unknowns of a deck from its observations.
-#include <chrono>
 #include <functional>
 
 #include "commands.hpp"
@@ -7,6 +6,7 @@
 #include "core/logging.hpp"
 #include "core/runtime.hpp"
 #include "core/signals.hpp"
+#include "core/stopwatch.hpp"
 #include "inverse/inversion.hpp"
 #include "inverse/run_objective.hpp"
 
@@ -15,11 +15,7 @@ namespace {
 
 /// A signal, or the end of the wall time.
 std::function<bool()> stop_request(double minutes) {
-  const auto start = std::chrono::steady_clock::now();
-  return [start, minutes] {
-    const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start;
-    return stop_signal() != 0 || (minutes > 0 && passed.count() >= 60 * minutes);
-  };
+  return [watch = Stopwatch(), minutes] { return stop_signal() != 0 || (minutes > 0 && watch.seconds() >= 60 * minutes); };
 }
 
 /// The --set and --backend of a call, to be typed again.

@@ -108,7 +108,7 @@ class Run {
       const RunOutcome outcome = simulation_.run(start);
       recorder_.finish();
       summarise(outcome, start);
-      return report(outcome);
+      return report(outcome, outcome.seconds - start.seconds);
     } catch (const NumericsError&) {
       recorder_.finish();
       throw;
@@ -147,11 +147,11 @@ class Run {
   /// Particles that have passed open faces.
   std::uint64_t left() const { return first_count_ - solver_->particle_count(); }
 
-  int report(const RunOutcome& outcome) const {
+  /// `seconds`: of this process's steps.
+  int report(const RunOutcome& outcome, double seconds) const {
     const double rate = static_cast<double>(solver_->particle_count()) * static_cast<double>(outcome.steps);
     spdlog::info("{} at {:.9g} s after {} steps, {} in steps ({:.3g} particle-steps/s), {} frames.", outcome.finished ? "Done" : "Stopped",
-                 outcome.at.time, outcome.at.step, duration(outcome.seconds), outcome.seconds > 0 ? rate / outcome.seconds : 0,
-                 recorder_.frame_count());
+                 outcome.at.time, outcome.at.step, duration(outcome.seconds), seconds > 0 ? rate / seconds : 0, recorder_.frame_count());
     if (model_.has_open_face()) spdlog::info("{} of {} particles have left through open faces.", left(), first_count_);
     if (outcome.finished) return static_cast<int>(ExitCode::done);
     spdlog::info("Continue with: jaxmpm run {} --resume auto (and the same -o and --set)", options_.deck);

@@ -11,7 +11,6 @@ namespace jaxmpm {
 template <int S>
 struct Bspline {
   static_assert(S >= 2 && S <= 4);
-  static constexpr int nodes = S;
   static constexpr double base_shift = S == 2 ? 0.0 : (S == 3 ? 0.5 : 1.0);
   /// Second moment D of the basis in cells², the same everywhere in the cell (not for linear splines).
   static constexpr double second_moment = S == 3 ? 0.25 : 1.0 / 3;
@@ -69,7 +68,5 @@ auto with_spline(deck::Basis basis, F&& f) {
   }
   return f(std::integral_constant<int, 4>{});
 }
-
-constexpr int spline_nodes(deck::Basis basis) { return basis == deck::Basis::linear ? 2 : (basis == deck::Basis::quadratic ? 3 : 4); }
 
 }  // namespace jaxmpm

@@ -9,27 +9,7 @@
 
 namespace jaxmpm {
 
-/// Nodes within this distance of the surface count as inside (cells): a face that lies on lattice planes stops the material there.
-inline constexpr double obstacle_tolerance = 1e-9;
-
-/// An obstacle's surface as a lattice node feels it. Behind a face of the domain the solid goes on as its mirror image, so the normal of a
-/// node on the face lies in the face (zero where nothing is left of it): else a slope would push the material out of the domain.
-inline SignedDistance surface_at_node(const RigidObstacle& obstacle, const Point& node, const Model& model) {
-  SignedDistance surface = obstacle.signed_distance(node);
-  bool on_face = false;
-  double square = 0;
-  const auto dim = std::size_t(model.dim);
-  for (std::size_t d = 0; d < dim; ++d) {
-    const bool low = node[d] == 0, high = node[d] == model.cells[d];
-    if ((low || high) && !model.is_periodic(int(d)) && !model.is_open(int(d), high)) on_face = true, surface.normal[d] = 0;
-    square += surface.normal[d] * surface.normal[d];
-  }
-  constexpr double nothing = 1e-12;
-  for (std::size_t d = 0; on_face && d < dim; ++d) surface.normal[d] = square > nothing ? surface.normal[d] / std::sqrt(square) : 0;
-  return surface;
-}
-
-/// A node inside an obstacle.
+/// A node inside an obstacle, and one of the surfaces that hold it.
 template <class T, int Dim>
 struct ObstacleNode {
   std::uint32_t node;      // own node of its block

@@ -93,8 +93,8 @@ struct Pack {
   friend JAXMPM_INLINE Mask<T, N> operator!=(Pack a, Pack b) { return {a.v != b.v}; }
 
   friend JAXMPM_INLINE Pack select(Mask<T, N> c, Pack a, Pack b) { return Pack(c.m ? a.v : b.v); }
-  friend JAXMPM_INLINE Pack max(Pack a, Pack b) { return Pack(a.v > b.v ? a.v : b.v); }
-  friend JAXMPM_INLINE Pack min(Pack a, Pack b) { return Pack(a.v < b.v ? a.v : b.v); }
+  friend JAXMPM_INLINE Pack max(Pack a, Pack b) { return Pack(a.v < b.v ? b.v : a.v); }  // of NaN: as in scalar.hpp
+  friend JAXMPM_INLINE Pack min(Pack a, Pack b) { return Pack(b.v < a.v ? b.v : a.v); }
   friend JAXMPM_INLINE Pack abs(Pack a) { return max(a, -a); }
 
   /// Lane by lane through memory: the compiler turns the loop into vector instructions where there are some.
@@ -125,12 +125,6 @@ JAXMPM_INLINE T largest(Pack<T, N> a) {
   T r = a[0];
   for (int i = 1; i < N; ++i) r = a[i] > r ? a[i] : r;
   return r;
-}
-
-/// a·b + c; the compiler contracts it to one instruction where the machine has it.
-template <class Real>
-JAXMPM_INLINE Real fma(Real a, Real b, Real c) {
-  return a * b + c;
 }
 
 /// Calls f(integral_constant 0) … f(integral_constant N−1): a loop whose index is known at compile time.

@@ -84,8 +84,8 @@ struct Taped {
     const P first = select(c, P(1), P(0));
     return join(select(c, a.value, b.value), a, first, b, P(1) - first);
   }
-  friend JAXMPM_INLINE Taped max(const Taped& a, const Taped& b) { return select(a > b, a, b); }
-  friend JAXMPM_INLINE Taped min(const Taped& a, const Taped& b) { return select(a < b, a, b); }
+  friend JAXMPM_INLINE Taped max(const Taped& a, const Taped& b) { return select(a < b, b, a); }
+  friend JAXMPM_INLINE Taped min(const Taped& a, const Taped& b) { return select(b < a, b, a); }
   friend JAXMPM_INLINE Taped abs(const Taped& a) { return max(a, -a); }
   friend JAXMPM_INLINE Taped sqrt(const Taped& a) {
     const P root = sqrt(a.value);

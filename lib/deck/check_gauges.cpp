@@ -18,15 +18,12 @@ void check_within(const Deck& deck, const Numbers& at, const std::vector<std::si
 }
 
 void check_places(const Deck& deck, const Place& root) {
-  if (root.reader.troubled("/domain")) return;
+  if (root.reader.troubled("/domain") || root.reader.troubled("/gravity")) return;
   const std::size_t dim = deck.domain.min.size();
-  std::size_t up = dim - 1;  // along which a height is measured: against gravity, or the last axis
-  for (std::size_t d = 0; d < deck.gravity.size(); ++d)
-    if (deck.gravity[d] != 0 && along_an_axis(deck.gravity)) up = d;
   std::vector<std::size_t> all, plan;
   for (std::size_t d = 0; d < dim; ++d) {
     all.push_back(d);
-    if (d != up) plan.push_back(d);
+    if (d != up_axis(deck.gravity)) plan.push_back(d);
   }
   for (const auto& [name, gauge] : deck.gauges) {
     const Place place = root.key("gauges").key(name);
@@ -43,6 +40,15 @@ void check_places(const Deck& deck, const Place& root) {
   }
 }
 
+/// Depth is measured along the vertical, of what lies across the front's way.
+void check_depth(const Deck& deck, const FrontGauge& front, const Place& place) {
+  if (!front.depth || deck.gravity.empty() || !place.sound({"kind", "axis"})) return;
+  if (front.axis == std::string(1, "xyz"[up_axis(deck.gravity)]))
+    place.problem("depth",
+                  "is measured along " + front.axis +
+                      ", the vertical, and cannot tell how far the material reaches along it; leave it out, or choose another axis");
+}
+
 bool is_open(const Deck& deck, const std::string& face) {
   const auto wall = deck.walls.find(face);
   return wall != deck.walls.end() && wall->second.kind == ContactKind::open;
@@ -57,7 +63,10 @@ void check_gauges(const Deck& deck, const Place& root) {
     if (place.given(key) && place.sound({"kind", key})) check_reference(name, names, key, place.key(key));
   };
   for (const auto& [name, gauge] : deck.gauges) {
-    if (const auto* front = std::get_if<FrontGauge>(&gauge)) refer(name, "body", front->body, names_in(deck.bodies));
+    if (const auto* front = std::get_if<FrontGauge>(&gauge)) {
+      refer(name, "body", front->body, names_in(deck.bodies));
+      check_depth(deck, *front, root.key("gauges").key(name));
+    }
     if (const auto* force = std::get_if<ForceGauge>(&gauge)) {
       refer(name, "obstacle", force->obstacle, names_in(deck.obstacles));
       if (is_open(deck, force->wall))

@@ -17,6 +17,13 @@ void check_reference(const std::string& name, const std::vector<std::string>& na
   place.problem("there is no " + what + " \"" + name + "\"" + described::suggestion(name, names) + choices);
 }
 
+std::size_t up_axis(const Numbers& gravity) {
+  std::size_t up = gravity.size() - 1;
+  for (std::size_t d = 0; d < gravity.size(); ++d)
+    if (std::abs(gravity[d]) > std::abs(gravity[up])) up = d;
+  return up;
+}
+
 bool along_an_axis(const Numbers& gravity) {
   return std::count_if(gravity.begin(), gravity.end(), [](double g) { return g != 0; }) == 1;
 }
@@ -183,6 +190,18 @@ void check_walls(const Deck& deck, const Place& root) {
   }
 }
 
+/// Material that a wall carries more slowly than the threshold would be stopped.
+void check_rest(const Deck& deck, const Place& root) {
+  if (!deck.method.rest) return;
+  for (const auto& [face, wall] : deck.walls) {
+    double square = 0;
+    for (const double component : wall.velocity) square += component * component;
+    if (square > 0 && std::sqrt(square) <= deck.method.rest->speed)
+      root.reader.problem("/method/rest/speed", "is above that of the wall " + face + ", " + shown_number(std::sqrt(square)) +
+                                                    " m/s: what the wall carries would be stopped; take less than that");
+  }
+}
+
 void check_body_force(const Deck& deck, const Place& root) {
   if (deck.body_force.empty()) return;
   if (deck.method.rest) root.reader.problem("/method/rest", "a body force may move what is at rest at any time; remove one of the two");
@@ -199,6 +218,7 @@ void check_scene(const Deck& deck, const Place& root) {
   check_points(deck, root);
   check_parameters(deck, root);
   check_walls(deck, root);
+  check_rest(deck, root);
   check_body_force(deck, root);
 }
 

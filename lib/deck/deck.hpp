@@ -58,6 +58,10 @@ struct NeoHookean {
   double density = 0, youngs_modulus = 0, poisson_ratio = 0;
 };
 using Material = std::variant<Newtonian, DruckerPrager, LinearElastic, NeoHookean>;
+/// ρ0 of any material: the deck's own number.
+inline const double& reference_density(const Material& material) {
+  return std::visit([](const auto& m) -> const double& { return m.density; }, material);
+}
 
 struct Shape;
 struct Box {
@@ -229,5 +233,12 @@ Deck with_assignments(const Deck& deck, const std::vector<std::string>& assignme
 /// JSON Schema (draft 2020-12) of the deck, and its reference in Markdown; both from the same describe() functions as the reader.
 std::string schema();
 std::string reference_page();
+
+/// Names of the domain's faces in a dimension, in order: x_min, x_max, …
+std::vector<std::string> face_names(int dimension);
+/// Names of the particle fields of results.
+const std::vector<std::string>& field_names();
+/// The axis along which heights are measured: that of gravity's largest component, the last one where there is no gravity.
+std::size_t up_axis(const Numbers& gravity);
 
 }  // namespace jaxmpm::deck

@@ -114,8 +114,7 @@ void describe(Description<Body>& d) {
   d.optional("initial_stress", &Body::initial_stress)
       .help(
           "By depth along gravity below the highest material on the same line, or below `surface`: \"hydrostatic\"; \"geostatic\" with K0 "
-          "= ν/(1 − ν); "
-          "or an object with `kind` or `k0`, and `surface`. Gravity must be along an axis or `surface` given.");
+          "= ν/(1 − ν); or an object with `kind` or `k0`, and `surface`. Gravity must be along an axis or `surface` given.");
   d.optional("jitter", &Body::jitter)
       .word("none")
       .when({"shape"}, on_lattice, "a shape other than points")

@@ -51,8 +51,7 @@ void describe(Description<Wall>& d) {
       .otherwise("at rest")
       .help(
           "Of the wall along itself, as a belt runs; the domain stays where it is, so no component across it. It should not run into a "
-          "face "
-          "where the material sticks: what is in that corner can go nowhere and is crushed.");
+          "face where the material sticks: what is in that corner can go nowhere and is crushed.");
   d.check({"kind"}, [](const Wall& wall, const described::Place& place) {
     if (wall.kind == ContactKind::friction && !place.given("coefficient") && !place.given("segments"))
       place.problem("coefficient", "is missing: kind \"friction\" needs it, or segments");

@@ -20,8 +20,7 @@ void describe(Description<Deck>& d) {
       .otherwise("none")
       .help(
           "Force per unit mass besides gravity, at the nodes of the grid: per component a number or an expression of x, y, z, the time t "
-          "and "
-          "the deck's parameters. Only with --backend cpu.");
+          "and the deck's parameters. Only with --backend cpu.");
   d.required("time", &Deck::time);
   d.optional("method", &Deck::method).otherwise("its own defaults");
   d.optional("parameters", &Deck::parameters).help("Names for expressions; they may be unknowns of an inverse problem.");

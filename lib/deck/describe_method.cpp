@@ -8,8 +8,8 @@
 namespace jaxmpm::deck {
 namespace {
 
-/// Largest number of cells along an axis: what 21 bits of a block's key hold.
-constexpr double most_cells = 2097152;
+/// Largest number of cells along an axis: those of a domain with a rim can be numbered by 63 bits.
+constexpr double most_cells = 1048576;
 /// The extent must be whole cells to within this part of a cell.
 constexpr double whole_cell_tolerance = 1e-6;
 
@@ -84,8 +84,7 @@ void describe(Description<Time>& d) {
 void describe(Description<Rest>& d) {
   d.is("rest",
        "Material that has come to rest is left out of the step until something moves beside it: a block of the grid (8 cells along each "
-       "axis "
-       "in 2D, 4 in 3D) rests once its material and that of the blocks around it has kept below `speed` for `time` (docs/theory.md, "
+       "axis in 2D, 4 in 3D) rests once its material and that of the blocks around it has kept below `speed` for `time` (docs/theory.md, "
        "\"Material at rest\").");
   d.required("speed", &Rest::speed)
       .unit("m/s")

@@ -33,7 +33,8 @@ void describe(Description<FrontGauge>& d) {
       .unit("m")
       .above(0)
       .otherwise("none: by quantile")
-      .help("Farthest crossing of this depth of material, instead of a quantile.");
+      .help(
+          "Farthest crossing of this depth of material, instead of a quantile: its volume over the length of the way and, in 3D, over the domain's breadth. Not along the vertical.");
   d.optional("connected", &FrontGauge::connected).help("Only material joined to the largest cluster of cells.");
   d.optional("smooth", &FrontGauge::smooth)
       .unit("m")
@@ -117,7 +118,7 @@ void describe(Description<Output>& d) {
   d.optional("directory", &Output::directory)
       .items(1)
       .otherwise("out/ and the deck's file name without its ending")
-      .help("Of the results, below the current directory.");
+      .help("Of the results; relative names start at the current directory.");
   d.optional("gauge_interval", &Output::gauge_interval)
       .unit("s")
       .above(0)

@@ -51,11 +51,6 @@ void describe(Description<ParticlesGauge>& d);
 void describe(Description<Output>& d);
 void describe(Description<Deck>& d);
 
-/// Names of the particle fields of results.
-const std::vector<std::string>& field_names();
-/// Names of the domain's faces in a dimension: x_min, x_max, …
-std::vector<std::string> face_names(int dimension);
-
 }  // namespace jaxmpm::deck
 
 namespace jaxmpm::described {

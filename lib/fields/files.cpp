@@ -37,6 +37,8 @@ std::vector<std::string> header(const std::vector<std::string_view>& words, cons
   std::vector<std::string> names;
   for (std::string_view word : words) {
     if (word.size() >= 2 && word.front() == '"' && word.back() == '"') word = word.substr(1, word.size() - 2);
+    if (std::find(names.begin(), names.end(), word) != names.end())
+      bad_file(pointer, file, line, "two columns are called '" + std::string(word) + "'; remove or rename one");
     names.emplace_back(word);
   }
   if (names.size() == 1 && names[0].find_first_of("; \t") != std::string::npos)

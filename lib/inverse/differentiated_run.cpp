@@ -1,20 +1,16 @@
 #include "inverse/differentiated_run.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "core/error.hpp"
+#include "core/stopwatch.hpp"
 #include "inverse/checkpoint_schedule.hpp"
 #include "solvers/reversible.hpp"
 #include "spdlog/fmt/fmt.h"
 
 namespace jaxmpm {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
 void ask(const std::function<bool()>& stop) {
   if (stop && stop()) throw Stopped{};
@@ -71,7 +67,7 @@ class Reversal {
   }
 
   ModelGradient run(RunCost& cost) {
-    const Clock::time_point begin = Clock::now();
+    const Stopwatch watch;
     if (steps_.dt.empty()) start_reverse(0);
     for (std::size_t end = steps_.dt.size(); end > 0;) {
       ask(stop_);
@@ -87,13 +83,13 @@ class Reversal {
       if (end == steps_.dt.size()) {
         go_to(start), walk_.advance(start, end);
         keep_sums();
-        cost.forward_seconds = since(begin);
+        cost.forward_seconds = watch.seconds();
         start_reverse(end);
       }
       reverse_step(start);
       end = start;
     }
-    cost.reverse_seconds = since(begin) - cost.forward_seconds;
+    cost.reverse_seconds = watch.seconds() - cost.forward_seconds;
     cost.particles_at_kinks = solver_.at_kinks();
     return solver_.gradient();
   }

@@ -199,11 +199,7 @@ void InversionDirectory::clear(const deck::Deck& deck, const Unknowns& unknowns)
   std::vector<std::string> files{json(), h5()};
   for (const std::string& pointer : particle_velocities(unknowns))
     files.push_back(path_ + "/" + velocity_file(deck.bodies[body_of(pointer)]));
-  for (const std::string& file : files) {
-    std::error_code failed;
-    std::filesystem::remove(file, failed);
-    if (failed) throw IoError("cannot remove '" + file + "': " + failed.message() + ".");
-  }
+  for (const std::string& file : files) remove_file(file);
 }
 
 void InversionDirectory::protect_inputs(const deck::Deck& deck, const Unknowns& unknowns) const {

@@ -151,7 +151,7 @@ struct Prepare {
     const auto wanted = deck.gauges.find(observed.gauge);
     if (wanted == deck.gauges.end()) throw DeckError(place.pointer + "/gauge", "there is no gauge '" + observed.gauge + "'.");
     std::vector<std::unique_ptr<Gauge>> gauges;
-    gauges.push_back(std::visit([&](const auto& kind) { return make_gauge(kind, place.model); }, wanted->second));
+    gauges.push_back(make_gauge(wanted->first, wanted->second, place.model));
     ObservedData data = ready(read_gauge(observed, place, *gauges[0]), observed);
     return observe_gauges(std::move(data), observed.weight, std::move(gauges), place.model);
   }
@@ -173,7 +173,7 @@ std::unique_ptr<Observer> make_observer(const deck::Deck& deck, const Model& mod
   std::vector<std::unique_ptr<Observation>> observations;
   for (std::size_t i = 0; i < inverse.observations.size(); ++i) {
     const std::string file = std::visit([](const auto& observed) { return observed.file; }, inverse.observations[i]);
-    const ObservationPlace place{"/inverse/observations/" + std::to_string(i), frame.file(file), model, end};
+    const ObservationPlace place{"/inverse/observations/" + std::to_string(i), frame.file(file), model, deck, end};
     observations.push_back(std::visit(Prepare{deck, place, i}, inverse.observations[i]));
   }
   return std::make_unique<Observations>(std::move(observations), model, end);

@@ -1,6 +1,7 @@
 #include "inverse/observed_gauge.hpp"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "core/error.hpp"
 #include "inverse/observed_table.hpp"
@@ -8,6 +9,20 @@
 
 namespace jaxmpm {
 namespace {
+
+/// A gauge of the same name that reads something else would be compared without a word. `smooth` may differ: its default is the cell size.
+void require_same_gauge(const deck::GaugeObservation& observed, const ObservationPlace& place, const ResultsReader& results) {
+  using Json = nlohmann::json;
+  const auto definition = [&](const std::string& deck) {
+    Json gauge = Json::parse(deck).at("gauges").at(observed.gauge);
+    gauge.erase("smooth");
+    return gauge;
+  };
+  const Json there = definition(results.deck()), here = definition(place.deck.resolved);
+  if (there == here) return;
+  place.bad_file(0, "gauge '" + observed.gauge + "' is another one there, " + there.dump() + ", than in this deck, " + here.dump() +
+                        "; make them the same, or take another gauge");
+}
 
 std::vector<ObservedRow> rows_of_results(const deck::GaugeObservation& observed, const ObservationPlace& place, const Gauge& gauge) {
   const ResultsReader results(place.file);
@@ -22,6 +37,7 @@ std::vector<ObservedRow> rows_of_results(const deck::GaugeObservation& observed,
     datasets.push_back(channel.name);
     width += channel.size();
   }
+  require_same_gauge(observed, place, results);
   const GaugeReadings readings = results.gauge(observed.gauge, datasets);
   if (!readings.time.empty() && readings.width != width)
     place.bad_file(0, "gauge '" + observed.gauge + "' has " + std::to_string(readings.width) + " values at each time there and " +

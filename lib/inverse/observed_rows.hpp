@@ -14,6 +14,7 @@ struct ObservationPlace {
   std::string pointer;  // /inverse/observations/i
   std::string file;     // with the deck's folder
   const Model& model;
+  const deck::Deck& deck;
   double end;  // of the run, s
   /// Throws DeckError: the file's contents do not do. `line` 0: none in particular.
   [[noreturn]] void bad_file(int line, const std::string& message) const;

@@ -74,6 +74,10 @@ const RecordedEvaluation& RecordedLoss::evaluate(Kind kind, const Variables& u, 
   } catch (const NumericsError& error) {
     fresh.diverged = true;
     reason = error.what();
+  } catch (const DeckError& error) {  // beyond what the unknown's own key allows: stepped back from, but where the search starts
+    if (evaluations_.empty()) throw;
+    fresh.diverged = true;
+    reason = error.what();
   }
   evaluations_.push_back(std::move(fresh));
   ++replayed_;

@@ -2,24 +2,16 @@
 
 #include <spdlog/spdlog.h>
 
-#include <chrono>
 #include <cmath>
 
 #include "core/error.hpp"
+#include "core/stopwatch.hpp"
 #include "inverse/observations.hpp"
 #include "inverse/scene_gradient.hpp"
 #include "io/summary.hpp"
 
 namespace jaxmpm {
 namespace {
-
-class Watch {
- public:
-  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 /// Bytes of an amount as the deck gives it: "4 GiB".
 std::size_t bytes_of(const std::string& amount) {
@@ -49,7 +41,7 @@ RunObjective::RunObjective(const deck::Deck& deck, Backend backend, std::vector<
 
 Evaluation RunObjective::loss(const Values& values) {
   const Model model = build_model(with_values(deck_, values), values);
-  const Watch watch;
+  const Stopwatch watch;
   replay_run(model, backend_, steps_, *observer_, stop_);
   Evaluation found;
   found.loss = observer_->loss();
@@ -66,7 +58,7 @@ Evaluation RunObjective::gradient(const Values& values) {
   const ModelGradient by_model = differentiate_run(model, steps_, *observer_, plan, snapshots_, cost, stop_);
   if (!told_ && plan.on_disk > 0) tell_disk(cost);
   told_ = true;
-  const Watch watch;
+  const Stopwatch watch;
   Evaluation found;
   found.loss = observer_->loss();
   found.gradient = gradient_by_pointer(deck, model, by_model, pointers_);

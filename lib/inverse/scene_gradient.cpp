@@ -108,7 +108,7 @@ class SceneGradient {
   }
 
   double by_wall(const Parts& parts) const {
-    static const Parts faces{"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"};
+    const std::vector<std::string> faces = deck::face_names(3);
     const auto face = static_cast<std::size_t>(std::find(faces.begin(), faces.end(), parts.at(1)) - faces.begin());
     const std::vector<double>& by_segments = gradient_.coefficient.at(face);
     if (parts.at(2) == "velocity") return gradient_.wall_velocity.at(face).at(std::stoul(parts.at(3)));

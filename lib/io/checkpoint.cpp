@@ -50,8 +50,11 @@ void write_frames(hdf5::Writer& file, const std::vector<FrameEntry>& frames) {
 std::vector<FrameEntry> read_frames(const hdf5::Reader& file) {
   const auto steps = file.counts("/frames/step");
   const auto times = file.numbers("/frames/time");
+  if (steps.size() != times.size())
+    throw IoError("'" + file.path() + "' is damaged: its frames have " + std::to_string(steps.size()) + " steps and " +
+                  std::to_string(times.size()) + " times.");
   std::vector<FrameEntry> frames;
-  for (std::size_t n = 0; n < std::min(steps.size(), times.size()); ++n) frames.push_back({steps[n], times[n]});
+  for (std::size_t n = 0; n < steps.size(); ++n) frames.push_back({steps[n], times[n]});
   return frames;
 }
 
@@ -65,7 +68,9 @@ void write_gauge(hdf5::Writer& file, const std::string& group, const GaugeSeries
 
 GaugeSeries read_gauge(const hdf5::Reader& file, const std::string& group) {
   GaugeSeries series;
-  series.channels = {{"", "", {file.shape(group + "/values").at(1)}, {}}};
+  const std::vector<std::size_t> shape = file.shape(group + "/values");
+  if (shape.size() != 2) throw IoError("'" + file.path() + "' is damaged: " + group + "/values is no table.");
+  series.channels = {{"", "", {shape[1]}, {}}};
   series.step = file.counts(group + "/step");
   series.time = file.numbers(group + "/time");
   series.valid = file.bytes(group + "/valid");

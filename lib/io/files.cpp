@@ -84,6 +84,14 @@ void make_directory(const std::string& path) {
   fs::remove(fs::path(path) / ".writable", failed);
 }
 
+void remove_file(const std::string& path) {
+  for (const std::string& file : {path, path + ".tmp"}) {
+    std::error_code failed;
+    fs::remove(file, failed);
+    if (failed) throw IoError("cannot remove '" + file + "': " + failed.message() + ".");
+  }
+}
+
 void rename_file(const std::string& from, const std::string& to) {
   if (std::rename(from.c_str(), to.c_str()) != 0) throw cannot_write(to, std::strerror(errno));
 }

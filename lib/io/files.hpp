@@ -30,6 +30,8 @@ std::string read_file(const std::string& path);
 void make_directory(const std::string& path);
 /// Renames within a directory. Throws IoError.
 void rename_file(const std::string& from, const std::string& to);
+/// Removes a file, and one in the making beside it, if they are there. Throws IoError.
+void remove_file(const std::string& path);
 /// What every message about a file that cannot be written ends with.
 IoError cannot_write(const std::string& path, const std::string& reason);
 

@@ -68,6 +68,7 @@ class Writer {
 class Reader {
  public:
   explicit Reader(const std::string& path);
+  const std::string& path() const { return path_; }
   bool has(const std::string& object) const;
   std::vector<std::string> names(const std::string& group) const;  ///< in the order of names
   std::string text_attribute(const std::string& object, const std::string& name) const;

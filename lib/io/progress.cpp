@@ -26,17 +26,16 @@ void Progress::finish() {
 
 void Progress::update(const Moment& now, double end) {
   if (quiet_) return;
-  const Clock::time_point clock = Clock::now();
   if (!started_) {
     started_ = true;
     first_ = now;
-    begin_ = last_ = clock;
+    begin_.restart(), last_.restart();
     return;
   }
   const double interval = terminal_ ? 0.2 : 10;  // s
-  if (std::chrono::duration<double>(clock - last_).count() < interval) return;
-  last_ = clock;
-  show(now, end, std::chrono::duration<double>(clock - begin_).count());
+  if (last_.seconds() < interval) return;
+  last_.restart();
+  show(now, end, begin_.seconds());
 }
 
 void Progress::show(const Moment& now, double end, double elapsed) {

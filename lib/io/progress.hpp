@@ -1,8 +1,8 @@
 #pragma once
 // How far a run is, its rate and the time left: on a terminal one line that is rewritten, otherwise plain lines now and then.
-#include <chrono>
 #include <string>
 
+#include "core/stopwatch.hpp"
 #include "solvers/time_control.hpp"
 
 namespace jaxmpm {
@@ -17,12 +17,11 @@ class Progress {
   void finish();
 
  private:
-  using Clock = std::chrono::steady_clock;
   void show(const Moment& now, double end, double elapsed);
   std::uint64_t particles_;
   bool quiet_, terminal_, shown_ = false, started_ = false;
   Moment first_;
-  Clock::time_point begin_, last_;
+  Stopwatch begin_, last_;
 };
 
 /// Seconds as a person reads them: "12 s", "3 min 20 s", "2 h 05 min".

@@ -20,7 +20,7 @@ ResultsRecorder::ResultsRecorder(const ResultsDirectory& directory, const deck::
       gauges_(deck, model),
       progress_(solver.particle_count(), quiet) {
   for (const Body& body : model.bodies) {
-    layout_.push_back({body.name, written_fields(deck.output, body.material)});
+    layout_.push_back({body.name, deck.output.fields.value()});
     fields_ = fields_ | selection(layout_.back().fields);
   }
   if (gauges_.needs_forces()) solver.record_forces(true);
@@ -42,6 +42,7 @@ void ResultsRecorder::begin() {
 }
 
 void ResultsRecorder::frame(const Moment& now) {
+  if (!frames_.empty() && frames_.back().step == now.step) return;  // a rescue comes back to a step that has its frame
   const std::vector<BodySnapshot> bodies = solver_.snapshot(fields_, true);
   require_finite(now, layout_, bodies, model_.dim);
   const std::size_t number = frames_.size();

@@ -24,12 +24,6 @@ long frame_number(const fs::path& file) {
   return std::stol(stem);
 }
 
-void remove_file(const std::string& path) {
-  std::error_code failed;
-  fs::remove(path, failed);
-  if (failed) throw IoError("cannot remove '" + path + "': " + failed.message() + ".");
-}
-
 }  // namespace
 
 std::string frame_name(std::size_t number) {
@@ -75,10 +69,8 @@ void ResultsDirectory::prepare(const std::vector<std::string>& formats) const {
 void ResultsDirectory::clear() const {
   drop_frames_from(0);
   for (const std::string& file :
-       {index(), next_checkpoint(), checkpoint(), previous_checkpoint(), summary(), vtk_series(), vtk_obstacles()}) {
+       {index(), next_checkpoint(), checkpoint(), previous_checkpoint(), summary(), vtk_series(), vtk_obstacles()})
     remove_file(file);
-    remove_file(file + ".tmp");
-  }
 }
 
 void ResultsDirectory::adopt_frames(const ResultsDirectory& from, std::size_t count) const {

@@ -161,18 +161,16 @@ JAXMPM_INLINE void update_particles(Particles<typename Sch::T, Sch::Dim>& p, std
       X[l] += double(move[l]);
       outside |= int(!(X[l] >= lower)) | int(!(X[l] <= upper));
     }
-    if (outside) report.sound = false;
+    if (outside) report.inside = false;
   }
-  const T slope_scale = T(1) / step.cell_size;
-  const T moment_scale = Sch::S > 2 ? T(1 / Bspline<Sch::S>::second_moment) / step.cell_size : T(0);
   if constexpr (Sch::affine) {
     constexpr int from = Sch::affine_by_moments ? G::moments : G::slopes;
-    const P scale(Sch::affine_by_moments ? moment_scale : slope_scale);
+    const P scale(Sch::affine_scale / step.cell_size);
     for (int c = 0; c < Dim; ++c)
       for (int k = 0; k < Dim; ++k) store(p.affine[std::size_t(c * Dim + k)].data() + s, scale * component(from + k, c), count);
   }
   constexpr int from = Sch::mls ? G::moments : G::slopes;
-  const P rate(Sch::mls ? moment_scale : slope_scale);
+  const P rate(Sch::gradient_scale / step.cell_size);
   alignas(64) T H[Dim * Dim][W], speed[W];
   for (int c = 0; c < Dim; ++c)
     for (int k = 0; k < Dim; ++k) {

@@ -12,10 +12,10 @@ namespace jaxmpm {
 
 /// What a tile reports of a step, gathered batch by batch in storage order.
 struct TileReport {
-  double fastest = 0;               // largest c + |v|, m/s
-  double displacement = 0;          // largest |Δx| along an axis, cells
-  double plastic = 0, viscous = 0;  // energy dissipated, J (only where accounted)
-  bool sound = true;                // every value finite and every particle inside the domain
+  double fastest = 0;                // largest c + |v|, m/s
+  double displacement = 0;           // largest |Δx| along an axis, cells
+  double plastic = 0, viscous = 0;   // energy dissipated, J (only where accounted)
+  bool sound = true, inside = true;  // every value finite, every particle inside the domain
 };
 
 template <class T, int Dim>

@@ -127,8 +127,8 @@ struct Coefficients {
     alignas(64) T sigma[Symmetric<T, Dim>::size][W];
     material.stress(p, s, count, sigma);
     const P e = load(p.compression.data() + s, count);
-    const T per_cell = Sch::mls ? T(1 / Bspline<Sch::S>::second_moment) / step.cell_size : T(1) / step.cell_size;
-    const P impulse = m * P(-step.dt * per_cell / material.reference_density()) / (P(T(1)) + e);  // −Δt V / Δx
+    const P impulse =
+        m * P(-step.dt * (Sch::gradient_scale / step.cell_size) / material.reference_density()) / (P(T(1)) + e);  // −Δt V / Δx
     for (int c = 0; c < Dim; ++c)
       for (int k = 0; k < Dim; ++k) q[4 * (force + k) + 1 + c] += impulse * P::load(sigma[Symmetric<T, Dim>::index(c, k)]);
     rows.fill(q);

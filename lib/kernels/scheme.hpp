@@ -26,6 +26,9 @@ struct Scheme {
   static constexpr bool p2g_moments = affine || mls, p2g_slopes = !mls;
   static constexpr bool g2p_moments = affine_by_moments || mls;
   static constexpr bool g2p_slopes = !mls || (affine && !affine_by_moments);
+  /// What turns sums over nodes into gradients times Δx: D⁻¹ (Eq B.2) where they are of moments, 1 where they are of slopes.
+  static constexpr T inverse_moment = T(S > 2 ? 1 / Bspline<S>::second_moment : 0);
+  static constexpr T affine_scale = affine_by_moments ? inverse_moment : T(1), gradient_scale = mls ? inverse_moment : T(1);
   /// A node's record: one quad {mass, momentum or velocity}; FLIP has a second {–, impulse or change of velocity}. θ has the last place of
   /// the first quad in 2D and the first place of the second in 3D.
   static constexpr int planes = flip || (dilation && Dim == 3) ? 2 : 1;

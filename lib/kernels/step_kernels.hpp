@@ -13,7 +13,8 @@ struct DomainBounds;
 
 template <class T, int Dim>
 struct StepKernels {
-  int spline_nodes = 0, planes = 0;
+  double base_shift = 0;  // of Bspline, cells
+  int planes = 0;
   std::size_t arena_size = 0, own_size = 0;  // values per tile and per block
 
   Index<Dim> (*block_extent)(const std::array<int, 3>& cells) = nullptr;

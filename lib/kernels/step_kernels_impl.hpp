@@ -19,7 +19,7 @@ StepKernels<typename Sch::T, Sch::Dim> kernels_of() {
   using T = typename Sch::T;
   constexpr int Dim = Sch::Dim, S = Sch::S;
   StepKernels<T, Dim> k;
-  k.spline_nodes = S, k.planes = Sch::planes;
+  k.base_shift = Bspline<S>::base_shift, k.planes = Sch::planes;
   k.arena_size = Sch::arena_size, k.own_size = Sch::own_size;
   k.block_extent = &block_extent<Dim, S>;
   k.sort = &sort_particles<S, T, Dim>;

@@ -113,7 +113,8 @@ struct DruckerPrager : RateElastic<Scalar> {
     const Real fs = trial_shear - k + q * trial_mean, ft = trial_mean - cutoff;
     const Real h = trial_shear - (k - q * cutoff) - Real(border_slope()) * ft;
     const Real sideways = bulk * psi, stiffness = G + sideways * q;
-    const auto below = ft<zero, sheared = select(below, fs, h)> zero;
+    const auto below = ft < zero;
+    const auto sheared = select(below, fs, h) > zero;
     const Real lambda_s = select(sheared, fs / stiffness, zero);
     const Real lambda_t = select(below, zero, select(h > zero, zero, ft / bulk));
     const Real sheared_mean = trial_mean - sideways * lambda_s, mean = min(sheared_mean, cutoff), top = k - q * mean;

@@ -42,7 +42,7 @@ struct LinearElastic : RateElastic<Scalar> {
     Symmetric<Real, Dim> by = read_symmetric<Real, Dim>(by_history);
     this->elasticity.trial_stress_adjoint(read_symmetric<Real, Dim>(history), H, by, by_H, by_constants[1], by_constants[2]);
     write_symmetric(by, by_history);
-    return Real(0) > Real(1);  // no branches
+    return no_kink<Real>();
   }
 
   template <class Real, int Dim>

@@ -14,10 +14,9 @@
 //     template <int Dim> static constexpr int history_size();
 //     /// Place of the plastic strain in the history, −1 where the law has none.
 //     template <int Dim> static constexpr int plastic_strain_index();
-//     /// Advances the committed state by one step. H = Δt ∇v. `compression` is ρ/ρ0 − 1; `history` has history_size values, updated in
-//     place.
-//     /// Returns the energy dissipated per unit of current volume during the step (plastic work where the law has a plastic strain, else
-//     /// viscous work), J/m³.
+//     /// Advances the committed state by one step. H = Δt ∇v. `compression` is ρ/ρ0 − 1; `history` has history_size values, updated
+//     /// in place. Returns the energy dissipated per unit of current volume during the step (plastic work where the law has a
+//     /// plastic strain, else viscous work), J/m³.
 //     template <class Real, int Dim> Real update(const Matrix<Real, Dim>& H, Real dt, Real& compression, Real* history) const;
 //     /// Cauchy stress of a committed state, Pa, tension positive.
 //     template <class Real, int Dim> Symmetric<Real, Dim> stress(Real compression, const Real* history) const;
@@ -27,12 +26,11 @@
 //     Scalar diffusivity() const;
 //     /// Strain energy per unit of current volume, J/m³.
 //     template <class Real, int Dim> Real energy(Real compression, const Real* history) const;
-//     /// Optional, where `static constexpr bool by_hand = true` (else core/tape.hpp differentiates): adjoints of update() and stress(),
-//     from the
-//     /// state at the start. by_compression and by_history are by the end values before and by the start values after; by_H is written,
-//     /// by_constants added to (order of constants()); the result tells where a branch hangs on round-off. stress_adjoint() adds to all.
-//     Tests compare them with the tape. template <class Real, int Dim> Condition update_adjoint(const Matrix<Real, Dim>& H, Real dt, Real
-//     compression, const Real* history,
+//     /// Optional, where `static constexpr bool by_hand = true`: adjoints of update() and stress(), from the state at the start.
+//     /// Without them core/tape.hpp differentiates on the CPU, and a GPU has no gradients of the law. by_compression and by_history are
+//     /// by the end values before and by the start values after; by_H is written, by_constants added to (order of constants()); the
+//     /// result tells where a branch hangs on round-off. stress_adjoint() adds to all. Tests compare them with the tape.
+//     template <class Real, int Dim> Condition update_adjoint(const Matrix<Real, Dim>& H, Real dt, Real compression, const Real* history,
 //         Real& by_compression, Real* by_history, Matrix<Real, Dim>& by_H, Real* by_constants) const;
 //     template <class Real, int Dim> void stress_adjoint(Real compression, const Real* history, const Symmetric<Real, Dim>& by_sigma,
 //         Real& by_compression, Real* by_history, Real* by_constants) const;

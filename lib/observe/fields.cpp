@@ -88,13 +88,6 @@ void add_field_gradient(const OutputField& field, double value, std::size_t p, s
   for (std::size_t a = 0; a < 3; ++a) stress[6 * p + a] -= value / 3;
 }
 
-std::vector<std::string> written_fields(const deck::Output& output, const deck::Material& material) {
-  if (output.fields) return *output.fields;
-  if (std::holds_alternative<deck::Newtonian>(material)) return {"velocity", "pressure"};
-  if (std::holds_alternative<deck::DruckerPrager>(material)) return {"velocity", "stress", "plastic_strain"};
-  return {"velocity", "stress"};
-}
-
 FieldSelection selection(const std::vector<std::string>& fields) {
   FieldSelection chosen;
   for (const std::string& name : fields)

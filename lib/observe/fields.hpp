@@ -40,8 +40,6 @@ double* gradient_of(std::vector<double> BodySnapshot::*field, BodySnapshot& grad
 void add_field_gradient(const OutputField& field, double value, std::size_t p, std::size_t k, std::size_t components, std::size_t particles,
                         BodySnapshot& gradient);
 
-/// Fields written for a body: those of the deck, or by default its velocity and what its material adds.
-std::vector<std::string> written_fields(const deck::Output& output, const deck::Material& material);
 FieldSelection selection(const std::vector<std::string>& fields);
 FieldSelection operator|(const FieldSelection& a, const FieldSelection& b);
 

@@ -29,8 +29,8 @@ class Force : public Gauge {
 };
 
 std::size_t face_index(const std::string& name, int dim) {
-  static const std::vector<std::string> faces{"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"};
-  for (std::size_t f = 0; f < 2 * static_cast<std::size_t>(dim); ++f)
+  const std::vector<std::string> faces = deck::face_names(dim);
+  for (std::size_t f = 0; f < faces.size(); ++f)
     if (faces[f] == name) return f;
   throw DeckError("/wall", "there is no wall '" + name + "' in this domain.");
 }

@@ -28,19 +28,22 @@ void Gauge::gradient(const Scene&, const Sample&, const double*, SnapshotGradien
 
 GaugeSet::GaugeSet(const deck::Deck& deck, const Model& model) {
   for (const auto& [name, wanted] : deck.gauges) {
-    std::unique_ptr<Gauge> gauge;
-    try {
-      gauge = std::visit([&](const auto& kind) { return make_gauge(kind, model); }, wanted);
-    } catch (const DeckError& error) {  // a gauge's file knows its own keys, not its name
-      std::vector<Problem> problems = error.problems;
-      for (Problem& problem : problems) problem.pointer = "/gauges/" + name + problem.pointer;
-      throw DeckError(problems);
-    }
+    std::unique_ptr<Gauge> gauge = make_gauge(name, wanted, model);
     const std::optional<Region> region = gauge->region();
     if (region) regions_.push_back(*region);
     if (Look& look = region ? nearby_ : anywhere_; gauge->needs_particles()) look = {true, look.fields | gauge->needs()};
     series_[name].channels = gauge->channels();
     gauges_[name] = std::move(gauge);
+  }
+}
+
+std::unique_ptr<Gauge> make_gauge(const std::string& name, const deck::Gauge& gauge, const Model& model) {
+  try {
+    return std::visit([&](const auto& kind) { return make_gauge(kind, model); }, gauge);
+  } catch (const DeckError& error) {  // the kinds know their own keys, not the gauge's name
+    std::vector<Problem> problems = error.problems;
+    for (Problem& problem : problems) problem.pointer = "/gauges/" + name + problem.pointer;
+    throw DeckError(problems);
   }
 }
 
@@ -122,10 +125,8 @@ Point domain_max(const Model& model) {
 }
 
 UpAxis up_axis(const Model& model) {
-  int axis = model.dim - 1;
-  for (int a = 0; a < model.dim; ++a)
-    if (std::abs(model.gravity[a]) > std::abs(model.gravity[axis])) axis = a;
-  return {axis, model.gravity[axis] > 0 ? -1.0 : 1.0};
+  const std::size_t axis = deck::up_axis(deck::Numbers(model.gravity.begin(), model.gravity.begin() + model.dim));
+  return {int(axis), model.gravity[axis] > 0 ? -1.0 : 1.0};
 }
 
 std::size_t body_index(const Model& model, const std::string& name, const std::string& pointer) {

@@ -14,6 +14,9 @@ std::unique_ptr<Gauge> make_gauge(const deck::EnergyGauge& gauge, const Model& m
 std::unique_ptr<Gauge> make_gauge(const deck::MomentumGauge& gauge, const Model& model);
 std::unique_ptr<Gauge> make_gauge(const deck::ParticlesGauge& gauge, const Model& model);
 
+/// The gauge of that name in the deck. Throws DeckError at its pointer.
+std::unique_ptr<Gauge> make_gauge(const std::string& name, const deck::Gauge& gauge, const Model& model);
+
 /// Not a gauge of the deck, but what an observation of a deposit's profile reads above `at` (horizontal coordinates, m): the height gauge
 /// of one body alone, or the ground and the volume of that body above it by area; the ground where that body is not.
 std::unique_ptr<Gauge> make_deposit_gauge(const deck::Numbers& at, const Model& model, std::size_t body, deck::ProfileReading reading);

@@ -1,6 +1,6 @@
 #include "reference/grid_update.hpp"
 
-#include "contact/obstacles.hpp"
+#include "scene/holding_normals.hpp"
 
 namespace jaxmpm {
 namespace {
@@ -166,25 +166,28 @@ void ReferenceGridUpdate<Scalar>::apply_obstacles(const Node& inner, const Scala
                                                   Triple<Scalar>& v) {
   if (!is_inside(inner)) return;
   const Point at{double(inner[0]), double(inner[1]), double(inner[2])};
-  for (std::size_t o = 0; o < model_.obstacles.size(); ++o) {
-    const RigidObstacle& obstacle = model_.obstacles[o];
-    const SignedDistance surface = surface_at_node(obstacle, at, model_);
-    if (surface.distance > 1e-9) continue;
-    Scalar approach(0);
-    for (int c = 0; c < model_.dim; ++c) approach += v[c] * Scalar(surface.normal[c]);
-    const bool bilateral = obstacle.kind == deck::ContactKind::slip || obstacle.kind == deck::ContactKind::no_slip;
-    if (!bilateral && !(approach < Scalar(0))) continue;
-    const Triple<Scalar> before = v;
-    for (int c = 0; c < model_.dim; ++c) v[c] -= approach * Scalar(surface.normal[c]);
-    if (obstacle.kind == deck::ContactKind::no_slip) v = {};
-    if (obstacle.kind == deck::ContactKind::friction) {
-      const Scalar speed = length(v);
-      const Scalar scale = friction_scale(Scalar(obstacle.coefficient) * abs(approach), speed);
-      for (int c = 0; c < model_.dim; ++c) v[c] = scale * v[c];
-      report_.friction += Scalar(0.5) * folded_mass * speed * speed * (Scalar(1) - scale * scale);
+  for (std::size_t o = 0; o < model_.obstacles.size(); ++o)
+    for (const Point& normal : holding_normals(model_.obstacles[o], at, model_)) {
+      const Triple<Scalar> before = v;
+      push_off(model_.obstacles[o], normal, folded_mass, v);
+      add_impulse(report_.obstacle_impulse[o], folded, before, v);
     }
-    add_impulse(report_.obstacle_impulse[o], folded, before, v);
-  }
+}
+
+/// Contact with one surface of an obstacle (Eqs 33, 35, 36).
+template <class Scalar>
+void ReferenceGridUpdate<Scalar>::push_off(const RigidObstacle& obstacle, const Point& normal, const Scalar& mass, Triple<Scalar>& v) {
+  Scalar approach(0);
+  for (int c = 0; c < model_.dim; ++c) approach += v[c] * Scalar(normal[c]);
+  const bool bilateral = obstacle.kind == deck::ContactKind::slip || obstacle.kind == deck::ContactKind::no_slip;
+  if (!bilateral && !(approach < Scalar(0))) return;
+  for (int c = 0; c < model_.dim; ++c) v[c] -= approach * Scalar(normal[c]);
+  if (obstacle.kind == deck::ContactKind::no_slip) v = {};
+  if (obstacle.kind != deck::ContactKind::friction) return;
+  const Scalar speed = length(v);
+  const Scalar scale = friction_scale(Scalar(obstacle.coefficient) * abs(approach), speed);
+  for (int c = 0; c < model_.dim; ++c) v[c] = scale * v[c];
+  report_.friction += Scalar(0.5) * mass * speed * speed * (Scalar(1) - scale * scale);
 }
 
 template <class Scalar>

@@ -51,6 +51,7 @@ class ReferenceGridUpdate {
   void apply_normals(const Node& inner, Triple<Scalar>& v) const;
   void apply_friction(const Node& inner, const Scalar& folded_mass, const std::vector<Image>& folded, Triple<Scalar>& v);
   void apply_obstacles(const Node& inner, const Scalar& folded_mass, const std::vector<Image>& folded, Triple<Scalar>& v);
+  void push_off(const RigidObstacle& obstacle, const Point& normal, const Scalar& mass, Triple<Scalar>& v);
   Scalar normal_impulse(int face, const Node& inner) const;
   double friction_coefficient(int face, const Node& inner) const;
   bool is_inside(const Node& node) const;

@@ -37,7 +37,4 @@ ReferenceState<Scalar> reference_state(const Model& model);
 template <class Scalar>
 std::array<Scalar, 6> reference_stress(const Model& model, const ReferenceState<Scalar>& state, std::size_t body, std::size_t particle);
 
-/// Density ρ0 of a deck's material, kg/m³.
-double reference_density(const deck::Material& material);
-
 }  // namespace jaxmpm

@@ -62,7 +62,7 @@ template <class Scalar>
 void particles_to_grid(const Model& model, const ReferenceState<Scalar>& state, ReferenceGrid<Scalar>& grid) {
   for (std::size_t b = 0; b < state.bodies.size(); ++b) {
     const ReferenceBody<Scalar>& body = state.bodies[b];
-    const double density = reference_density(model.bodies[b].material);
+    const double density = deck::reference_density(model.bodies[b].material);
     for (std::size_t p = 0; p < body.mass.size(); ++p) {
       const std::array<Scalar, 6> s = reference_stress(model, state, b, p);
       const Scalar sigma[3][3] = {{s[0], s[3], s[5]}, {s[3], s[1], s[4]}, {s[5], s[4], s[2]}};
@@ -213,10 +213,6 @@ std::array<Scalar, 6> stress_of(const deck::Material& material, const Scalar& co
 }
 
 }  // namespace
-
-double reference_density(const deck::Material& material) {
-  return std::visit([](const auto& m) { return m.density; }, material);
-}
 
 template <class Scalar>
 ReferenceState<Scalar> reference_state(const Model& model) {

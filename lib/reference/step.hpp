@@ -1,6 +1,6 @@
 #pragma once
 // The step once more, plain and slow, as docs/theory.md writes it: the oracle that the fast step must match, and with dual numbers the
-// source of its directional derivatives. It shares the materials with the fast step and nothing else.
+// source of its directional derivatives. It shares the materials and the scene with the fast step, and nothing else.
 #include <map>
 
 #include "core/dual.hpp"

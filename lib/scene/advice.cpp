@@ -34,8 +34,7 @@ class Adviser {
       if (is_uniform(axis))
         say(std::string("nothing varies along ") + "xyz"[axis] +
             ": in 2D the same scene gives the same result, 25 times cheaper already with 4 cells across (docs/stability.md, \"Two "
-            "dimensions "
-            "instead of three\")");
+            "dimensions instead of three\")");
   }
   bool is_uniform(int axis) const {
     const auto a = std::size_t(axis);
@@ -130,12 +129,10 @@ class Adviser {
       say("the fixed step is " + number_text(std::round(1000 * number) / 1000) + " of what a wave takes to cross a cell; \"auto\" takes " +
           number_text(model_.time.cfl) +
           " of it, so fewer steps, and fewer are better: sixteen times as many "
-          "had "
-          "three to eight times the error at one cell size (docs/validation.md, \"Manufactured solution\")");
+          "had three to eight times the error at one cell size (docs/validation.md, \"Manufactured solution\")");
     if (model_.method.basis == deck::Basis::linear && number > linear_limit)
       say("with linear splines steps above 0.3 of what a wave takes to cross a cell were unstable in some scenes; set /time/cfl to 0.25 or "
-          "leave it out "
-          "(docs/stability.md, \"Time step against the speed of waves\")");
+          "leave it out (docs/stability.md, \"Time step against the speed of waves\")");
   }
 
   void about_scheme() {
@@ -145,8 +142,7 @@ class Adviser {
           "the material can end the run (docs/stability.md, \"Cell crossing\" and \"Tiny nodal masses\")");
     if (method.transfer == deck::Transfer::flip && method.flip_fraction == 1)
       say("flip_fraction 1 keeps 99 % of the particles' noise after 1,000 steps, 0.99 halves it in 69 (docs/stability.md, \"FLIP's noise "
-          "and "
-          "its null space\")");
+          "and its null space\")");
     const double share =
         method.transfer == deck::Transfer::pic ? 1 : (method.transfer == deck::Transfer::flip ? 1 - method.flip_fraction : 0);
     constexpr double much = 0.05;

@@ -44,7 +44,7 @@ double InitialGradient::by_weight(const double& number) const {
   double sum = 0;
   for (std::size_t b = 0; b < model_.bodies.size(); ++b) {  // mass at fixed compression
     const deck::Material& material = deck_.materials.at(deck_.bodies[b].material);
-    const double& density = std::visit([](const auto& m) -> const double& { return m.density; }, material);
+    const double& density = deck::reference_density(material);
     const std::vector<double>& by_mass = by_initial_[b]->mass;
     for (std::size_t p = 0; p < by_mass.size() && &density == &number; ++p)
       sum += by_mass[p] * mass_slope(model_.bodies[b].initial.mass[p], density, 0, 1, 0);

@@ -19,14 +19,15 @@ void check_gravity(const deck::InitialStress& stress, double size, int axis, std
                     "the free surface (the plane through it across gravity)");
 }
 
-void set_initial_stress(const deck::Deck& deck, const Frame& frame, const std::vector<Seeds>& seeds, std::vector<Body>& bodies) {
+std::vector<double> set_initial_stress(const deck::Deck& deck, const Frame& frame, const std::vector<Seeds>& seeds,
+                                       std::vector<Body>& bodies) {
   for (std::size_t i = 0; i < bodies.size(); ++i)
     if (deck.bodies[i].initial_stress.kind != Kind::none) bodies[i].initial.stress.resize(bodies[i].initial.position.size());
-  spread_weight({deck, frame, seeds, bodies}, DeckNumber{},
-                [&](std::size_t i, std::size_t p, double compression, const std::array<double, 6>& stress) {
-                  bodies[i].initial.compression[p] = compression;
-                  bodies[i].initial.stress[p] = stress;
-                });
+  return spread_weight({deck, frame, seeds, bodies}, DeckNumber{},
+                       [&](std::size_t i, std::size_t p, double compression, const std::array<double, 6>& stress) {
+                         bodies[i].initial.compression[p] = compression;
+                         bodies[i].initial.stress[p] = stress;
+                       });
 }
 
 }  // namespace jaxmpm

@@ -15,7 +15,8 @@ namespace jaxmpm {
 /// which for one fluid is p = ρ0 c² (exp(g δ/c²) − 1). Bodies without initial stress weigh ρ0. Depth starts at the upper face of the
 /// highest lattice cell of all bodies on the line along gravity; a gap below it counts as filled by what lies beneath it (an obstacle in a
 /// pool does not part its water). DeckError at /bodies/i/initial_stress without gravity, without a line to follow, or for a fluid with an
-/// earth pressure coefficient.
-void set_initial_stress(const deck::Deck& deck, const Frame& frame, const std::vector<Seeds>& seeds, std::vector<Body>& bodies);
+/// earth pressure coefficient. Returns for each body the largest gap that was counted as filled, cells.
+std::vector<double> set_initial_stress(const deck::Deck& deck, const Frame& frame, const std::vector<Seeds>& seeds,
+                                       std::vector<Body>& bodies);
 
 }  // namespace jaxmpm

@@ -53,12 +53,16 @@ class LinePressure {
     Real above(0);
     double level = pieces_.front().top;
     for (Piece& piece : pieces_) {  // each takes over where the last one ends, gaps included
+      gap_ = std::max(gap_, piece.top - level);
       piece.top = level;
       above_.push_back(above);
       level = std::max(level, piece.bottom);
       above = laws[piece.body].pressure(above, Real((level - piece.top) * cell_size_), g_);
     }
   }
+
+  /// Largest gap between pieces, cells.
+  double gap() const { return gap_; }
 
   Real at(double depth_coordinate) const {
     std::size_t k = 0;
@@ -70,6 +74,7 @@ class LinePressure {
  private:
   std::vector<Piece> pieces_;
   std::vector<Real> above_;
+  double gap_ = 0;
   const std::vector<Overburden<Real>>* laws_;
   double cell_size_;
   Real g_;
@@ -116,10 +121,12 @@ void fill_below_plane(std::size_t i, const WeightedScene& scene, const Overburde
   fill(i, scene.bodies[i].initial, law, gravity, pressure, sink);
 }
 
+/// Returns the largest gap in the material above, cells.
 template <class Real, class Sink>
-void fill_below_material(std::size_t i, const WeightedScene& scene, const std::vector<LineTable>& tables,
-                         const std::vector<Overburden<Real>>& laws, const Gravity<Real>& gravity, Sink& sink) {
+double fill_below_material(std::size_t i, const WeightedScene& scene, const std::vector<LineTable>& tables,
+                           const std::vector<Overburden<Real>>& laws, const Gravity<Real>& gravity, Sink& sink) {
   std::uint64_t line = ~std::uint64_t{0};
+  double gap = 0;
   std::optional<LinePressure<Real>> of_line;
   const auto pressure = [&](const Point& place) {
     if (!of_line || tables[i].line_of(place) != line) {
@@ -127,15 +134,18 @@ void fill_below_material(std::size_t i, const WeightedScene& scene, const std::v
       std::vector<Piece> pieces;
       for (const LineTable& table : tables) table.collect(place, pieces);
       of_line.emplace(std::move(pieces), laws, scene.frame.cell_size, gravity.size);
+      gap = std::max(gap, of_line->gap());
     }
     return of_line->at(value_of(gravity.direction[gravity.axis]) * place[gravity.axis]);
   };
   fill(i, scene.bodies[i].initial, laws[i], gravity, pressure, sink);
+  return gap;
 }
 
-/// Calls sink(body, particle, compression, stress) for every particle of every body that asks for initial stress, in their order.
+/// Calls sink(body, particle, compression, stress) for every particle of every body that asks for initial stress, in their order. Returns
+/// for each body the largest gap in the material along gravity that was counted as filled, cells.
 template <class Number, class Sink>
-void spread_weight(const WeightedScene& scene, const Number& number, Sink&& sink) {
+std::vector<double> spread_weight(const WeightedScene& scene, const Number& number, Sink&& sink) {
   using Real = decltype(number(scene.deck.gravity[0]));
   const Gravity<Real> gravity = make_gravity(scene.deck, number);
   std::vector<Overburden<Real>> laws;
@@ -148,12 +158,14 @@ void spread_weight(const WeightedScene& scene, const Number& number, Sink&& sink
   std::vector<LineTable> tables;
   for (std::size_t i = 0; i < scene.bodies.size() && columns_needed(scene.deck); ++i)
     tables.emplace_back(scene.seeds[i], gravity.axis, value_of(gravity.direction[gravity.axis]), scene.frame.dim, i);
+  std::vector<double> gaps(scene.bodies.size(), 0.0);
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const deck::InitialStress& stress = scene.deck.bodies[i].initial_stress;
     if (stress.kind == deck::InitialStress::Kind::none) continue;
     if (stress.surface) fill_below_plane(i, scene, laws[i], gravity, sink);
-    else fill_below_material(i, scene, tables, laws, gravity, sink);
+    else gaps[i] = fill_below_material(i, scene, tables, laws, gravity, sink);
   }
+  return gaps;
 }
 
 }  // namespace jaxmpm

@@ -6,6 +6,7 @@
 
 #include "core/error.hpp"
 #include "fields/body_force.hpp"
+#include "scene/holding_normals.hpp"
 #include "scene/initial_stress.hpp"
 #include "scene/initial_velocity.hpp"
 #include "scene/overburden.hpp"
@@ -16,14 +17,13 @@ namespace {
 
 constexpr double kContactReach = 1;  // cells: may_touch tells of boxes that can hold places nearer to the solid than this
 
-const std::array<const char*, 6> kFaceNames{"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"};
-
 std::array<FaceLaw, 6> make_faces(const deck::Deck& deck, const Frame& frame) {
   std::array<FaceLaw, 6> faces;
-  for (int face = 0; face < 6; ++face) {
+  const std::vector<std::string> names = deck::face_names(3);
+  for (std::size_t face = 0; face < names.size(); ++face) {
     FaceLaw& law = faces[face];
     law.segment_axis = face / 2 == 0 ? 1 : 0;  // the first other axis
-    const auto wall = deck.walls.find(kFaceNames[face]);
+    const auto wall = deck.walls.find(names[face]);
     if (wall == deck.walls.end()) continue;
     law.kind = wall->second.kind;
     std::copy(wall->second.velocity.begin(), wall->second.velocity.end(), law.velocity.begin());
@@ -49,7 +49,7 @@ RigidObstacle make_obstacle(const deck::Obstacle& obstacle, const GeometryPointe
 
 /// Whether a node of the grid lies in an obstacle; taken for granted where that would take long to find out.
 bool holds_a_node(const Geometry& shape, const Frame& frame) {
-  constexpr double many = 2e6, on_surface = 1e-9;  // nodes; cells, as contact has it
+  constexpr double many = 2e6, on_surface = obstacle_tolerance;  // nodes; cells
   const Bounds bounds = shape.bounds();
   std::array<int, 3> first{}, last{};
   double count = 1;
@@ -75,7 +75,7 @@ const deck::Material& material_of(const deck::Deck& deck, std::size_t body) {
 
 /// Mass of a particle's volume (of the lattice, or by its file) at its density.
 void set_masses(Body& body, const Seeds& seeds, const Frame& frame) {
-  const double density = reference_density(body.material);
+  const double density = deck::reference_density(body.material);
   for (std::size_t p = 0; p < body.initial.mass.size(); ++p)
     body.initial.mass[p] = density * seeds.volume(p, frame) * (1 + body.initial.compression[p]);
 }
@@ -106,7 +106,7 @@ std::vector<Body> place_bodies(const deck::Deck& deck, const Frame& frame, const
 }
 
 std::vector<std::string> notices_of(const deck::Deck& deck, const Frame& frame, const std::vector<GeometryPointer>& obstacles,
-                                    const std::vector<Seeds>& seeds) {
+                                    const std::vector<Seeds>& seeds, const std::vector<double>& gaps) {
   std::vector<std::string> notices;
   for (std::size_t i = 0; i < obstacles.size(); ++i)
     if (!holds_a_node(*obstacles[i], frame))
@@ -116,6 +116,12 @@ std::vector<std::string> notices_of(const deck::Deck& deck, const Frame& frame, 
     if (seeds[i].cut > 0)
       notices.push_back("body '" + deck.bodies[i].name + "': " + std::to_string(seeds[i].cut) + " of its " +
                         std::to_string(seeds[i].cut + seeds[i].count) + " particles lie inside an obstacle and are left out");
+  for (std::size_t i = 0; i < gaps.size(); ++i)
+    if (gaps[i] >= 1)
+      notices.push_back(
+          "body '" + deck.bodies[i].name + "': its initial_stress counts a gap of " + number_text(gaps[i] * frame.cell_size) +
+          " m in the material above as filled, as where an obstacle stands in a pool; if what is above the gap is to fall, give "
+          "\"surface\": { \"point\": […] } on the free surface below it");
   return notices;
 }
 
@@ -172,7 +178,7 @@ Model build_model(const deck::Deck& deck) {
 
   const SeededScene scene = seed_bodies(deck, frame, obstacles);
   model.bodies = place_bodies(deck, frame, scene, obstacles);
-  set_initial_stress(deck, frame, scene.seeds, model.bodies);
+  const std::vector<double> gaps = set_initial_stress(deck, frame, scene.seeds, model.bodies);
   for (std::size_t i = 0; i < model.bodies.size(); ++i) {
     set_masses(model.bodies[i], scene.seeds[i], frame);
     set_initial_velocity(deck, frame, i, model.bodies[i].initial);
@@ -180,7 +186,7 @@ Model build_model(const deck::Deck& deck) {
   model.body_force = make_body_force(deck, frame, model.bodies);
   model.record_velocity_gradient = asks_for_velocity_gradient(deck);
   model.account_energy = has_energy_gauge(deck);
-  model.notices = notices_of(deck, frame, obstacles, scene.seeds);
+  model.notices = notices_of(deck, frame, obstacles, scene.seeds, gaps);
   return model;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 // What a deck comes down to: everything the step needs to know, and the first state. Host side, double precision.
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <functional>

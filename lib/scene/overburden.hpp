@@ -46,7 +46,4 @@ auto make_overburden(const deck::Material& material, const deck::InitialStress& 
   return law;
 }
 
-/// ρ0 of any material.
-double reference_density(const deck::Material& material);
-
 }  // namespace jaxmpm

@@ -4,6 +4,7 @@
 
 #include "core/parallel_host.hpp"
 #include "kernels/wall_node.hpp"
+#include "scene/holding_normals.hpp"
 
 namespace jaxmpm {
 namespace {
@@ -44,11 +45,11 @@ auto ContactBlocks<T, Dim>::obstacle_nodes(const Node& block) const -> std::shar
     const RigidObstacle& obstacle = model_.obstacles[o];
     if (!obstacle.may_touch(lower, upper)) continue;
     for (int own = 0; own < Shape::cells; ++own) {
-      const SignedDistance s = surface_at_node(obstacle, as_point<Dim>(node_of<Dim>(first, own)), model_);
-      if (!(s.distance <= obstacle_tolerance)) continue;
-      ObstacleNode<T, Dim> node{std::uint32_t(own), std::uint32_t(o), {}};
-      for (int c = 0; c < Dim; ++c) node.normal[c] = T(s.normal[std::size_t(c)]);
-      found.push_back(node);
+      for (const Point& normal : holding_normals(obstacle, as_point<Dim>(node_of<Dim>(first, own)), model_)) {
+        ObstacleNode<T, Dim> node{std::uint32_t(own), std::uint32_t(o), {}};
+        for (int c = 0; c < Dim; ++c) node.normal[c] = T(normal[std::size_t(c)]);
+        found.push_back(node);
+      }
     }
   }
   return found.empty() ? nullptr : std::make_shared<const ObstacleNodes>(std::move(found));

@@ -23,7 +23,8 @@ class ContactBlocks {
   /// [block] place among the wall blocks, −1 away from walls.
   const std::vector<int>& wall_slot() const { return wall_slot_; }
   const std::vector<std::uint32_t>& wall_blocks() const { return wall_blocks_; }
-  /// Nodes of a block that are inside obstacles, in deck order of these; null where there are none.
+  /// Nodes of a block that are inside obstacles, in deck order of these, one entry for each surface that holds (holding_normals()); null
+  /// where there are none.
   const ObstacleNodes* obstacles(std::size_t block) const { return obstacles_[block].get(); }
 
  private:

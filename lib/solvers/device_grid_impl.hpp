@@ -1,6 +1,5 @@
 #pragma once
 // Definitions of DeviceGrid and PhaseTimer.
-#include <chrono>
 
 #include "solvers/device_step.hpp"
 
@@ -99,20 +98,17 @@ double DeviceGrid<T, Dim, Space>::friction(const Space& space) const {
   return model_.account_energy && tables_.blocks > 0 ? sum(space, friction_, 1).front() : 0.0;
 }
 
-inline double PhaseTimer::now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
-
 inline void PhaseTimer::begin_step() {
   ++steps_;
-  began_ = phase_began_ = now();
+  step_.restart(), phase_.restart();
 }
 
 inline void PhaseTimer::end_phase(double PhaseSeconds::*phase) {
-  const double t = now();
-  sampled_.*phase += t - phase_began_;
-  phase_began_ = t;
+  sampled_.*phase += phase_.seconds();
+  phase_.restart();
 }
 
-inline void PhaseTimer::end_step() { total_ += now() - began_; }
+inline void PhaseTimer::end_step() { total_ += step_.seconds(); }
 
 inline PhaseSeconds PhaseTimer::seconds(double sort) const {
   const double sampled = sampled_.p2g + sampled_.grid + sampled_.g2p, scale = sampled > 0 ? total_ / sampled : 0;

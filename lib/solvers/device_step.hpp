@@ -1,6 +1,7 @@
 #pragma once
 // The explicit stepper on a device (Du & He 2025, Eqs 9–18): the layout and the kernels' mathematics of ExplicitStep, with the particles
 // and the grid in the device's memory. A step moves nothing to the host but its report. Runs on any Kokkos execution space.
+#include "core/stopwatch.hpp"
 #include "kernels/device/scheme.hpp"
 #include "kernels/device/sort.hpp"
 #include "solvers/contact_blocks.hpp"
@@ -68,9 +69,9 @@ class PhaseTimer {
   PhaseSeconds seconds(double sort) const;
 
  private:
-  static double now();
   std::uint64_t steps_ = 0;
-  double began_ = 0, phase_began_ = 0, total_ = 0;
+  Stopwatch step_, phase_;
+  double total_ = 0;
   PhaseSeconds sampled_;
 };
 

@@ -40,9 +40,8 @@ DeviceStep<T, Dim, Space>::DeviceStep(const Model& model, const DeviceScheme<T, 
 template <class T, int Dim, class Space>
 void DeviceStep<T, Dim, Space>::sort_if_due() {
   if (!sort_is_due()) return;
-  const auto start = std::chrono::steady_clock::now();
+  const Timed timed(sort_seconds_);
   sort();
-  sort_seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 template <class T, int Dim, class Space>
@@ -137,8 +136,9 @@ StepNumbers DeviceStep<T, Dim, Space>::numbers() const {
 template <class T, int Dim, class Space>
 void DeviceStep<T, Dim, Space>::report_failure() const {
   const std::vector<Particles<T, Dim>> bodies = bodies_on_host();
-  for (std::size_t b = 0; b < bodies.size(); ++b) check_particles<T, Dim>(model_, model_.bodies[b], bodies[b], 0, bodies[b].count());
-  throw NumericsError("a wave speed is not finite");
+  for (std::size_t b = 0; b < bodies.size(); ++b)
+    check_particles<T, Dim>(model_, model_.bodies[b], *materials_[b], bodies[b], 0, bodies[b].count());
+  throw NumericsError("the state of a particle is not finite");
 }
 
 template <class T, int Dim, class Space>

@@ -1,29 +1,14 @@
 #include "solvers/explicit_step.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 
 #include "core/error.hpp"
 #include "core/parallel_host.hpp"
+#include "core/stopwatch.hpp"
 
 namespace jaxmpm {
-namespace {
-
-/// Adds the time of a scope to a phase.
-class Stopwatch {
- public:
-  explicit Stopwatch(double& sum) : sum_(sum), start_(std::chrono::steady_clock::now()) {}
-  ~Stopwatch() { sum_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
-
- private:
-  double& sum_;
-  std::chrono::steady_clock::time_point start_;
-};
-
-}  // namespace
-
 /// One explicit step, stress updated last (Du & He 2025, Eqs 9–18).
 template <class T, int Dim>
 void ExplicitStep<T, Dim>::step(double dt) {
@@ -62,7 +47,7 @@ ExplicitStep<T, Dim>::ExplicitStep(const Model& model)
 
 template <class T, int Dim>
 void ExplicitStep<T, Dim>::sort(std::vector<std::vector<std::uint32_t>>* orders) {
-  const Stopwatch time(seconds_.sort);
+  const Timed timed(seconds_.sort);
   blocks_.tiles.clear(), tile_key_.clear();
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     wrap(bodies_[b]);
@@ -77,11 +62,10 @@ void ExplicitStep<T, Dim>::sort(std::vector<std::vector<std::uint32_t>>* orders)
 /// Moves particles that have passed a periodic face by whole domains, so that their base nodes are 0 … N − 1.
 template <class T, int Dim>
 void ExplicitStep<T, Dim>::wrap(Particles<T, Dim>& particles) const {
-  const double base_shift = 0.5 * (kernels_.spline_nodes - 2);
   for (std::size_t d = 0; d < Dim; ++d) {
     if (blocks_.period[d] == 0) continue;
     const double N = model_.cells[d];
-    for (double& X : particles.position[d]) X -= N * std::floor((X - base_shift) / N);
+    for (double& X : particles.position[d]) X -= N * std::floor((X - kernels_.base_shift) / N);
   }
 }
 
@@ -122,7 +106,7 @@ Index<Dim> ExplicitStep<T, Dim>::arena_origin(const Tile& tile) const {
 
 template <class T, int Dim>
 void ExplicitStep<T, Dim>::p2g() {
-  const Stopwatch time(seconds_.p2g);
+  const Timed timed(seconds_.p2g);
   const std::vector<std::uint32_t>&moving = rest_.moving(), &supports = supports_.tiles();
   const auto arena = [&](std::size_t t) { return arenas_.data() + t * kernels_.arena_size; };
   parallel_for_host("jaxmpm::p2g", moving.size(), [&](std::size_t k) { scatter(moving[k], constants_, arena(moving[k])); });
@@ -143,13 +127,13 @@ void ExplicitStep<T, Dim>::scatter(std::size_t t, const StepConstants<T>& consta
 
 template <class T, int Dim>
 void ExplicitStep<T, Dim>::update_grid(double dt) {
-  const Stopwatch time(seconds_.grid);
+  const Timed timed(seconds_.grid);
   grid_.update(blocks_, arenas_.data(), dt, numbers_.time);
 }
 
 template <class T, int Dim>
 void ExplicitStep<T, Dim>::g2p() {
-  const Stopwatch time(seconds_.g2p);
+  const Timed timed(seconds_.g2p);
   const std::vector<std::uint32_t>& moving = rest_.moving();
   parallel_for_host("jaxmpm::g2p", moving.size(), [&](std::size_t k) {
     const std::uint32_t t = moving[k];
@@ -170,7 +154,7 @@ void ExplicitStep<T, Dim>::collect(double dt) {
     const TileReport& r = reports_[t];
     numbers_.fastest = std::max(numbers_.fastest, r.fastest), moved = std::max(moved, r.displacement);
     numbers_.dissipation.plastic += r.plastic, numbers_.dissipation.viscous += r.viscous;
-    sound = sound && r.sound;
+    sound = sound && r.sound && r.inside;
   }
   if (!sound && !all_have_left()) report_failure();
   numbers_.drift += moved;
@@ -184,10 +168,10 @@ bool ExplicitStep<T, Dim>::all_have_left() {
   if (!model_.has_open_face()) return false;
   for (const std::uint32_t t : rest_.moving()) {
     const Tile& tile = blocks_.tiles[t];
-    if (reports_[t].sound) continue;
+    if (!reports_[t].sound) return false;
+    if (reports_[t].inside) continue;
     release_leavers(model_, bodies_[tile.body], tile.begin, tile.end);
-    check_particles<T, Dim>(model_, model_.bodies[tile.body], bodies_[tile.body], tile.begin, tile.end);
-    if (!std::isfinite(reports_[t].fastest)) return false;
+    check_particles<T, Dim>(model_, model_.bodies[tile.body], *materials_[tile.body], bodies_[tile.body], tile.begin, tile.end);
   }
   return true;
 }
@@ -195,11 +179,11 @@ bool ExplicitStep<T, Dim>::all_have_left() {
 template <class T, int Dim>
 void ExplicitStep<T, Dim>::report_failure() const {
   for (const std::uint32_t t : rest_.moving()) {
-    if (reports_[t].sound) continue;
+    if (reports_[t].sound && reports_[t].inside) continue;
     const Tile& tile = blocks_.tiles[t];
-    check_particles<T, Dim>(model_, model_.bodies[tile.body], bodies_[tile.body], tile.begin, tile.end);
+    check_particles<T, Dim>(model_, model_.bodies[tile.body], *materials_[tile.body], bodies_[tile.body], tile.begin, tile.end);
   }
-  throw NumericsError("a wave speed is not finite");
+  throw NumericsError("the state of a particle is not finite");
 }
 
 template <class T, int Dim>
@@ -271,6 +255,7 @@ void ExplicitStep<T, Dim>::restore(const std::vector<RawArray>& arrays) {
   restore_state<T, Dim>(arrays, bodies_, blocks_.tiles, tile_key_, numbers_, model_.has_open_face());
   if (rest_.possible()) rest_.restore(arrays, blocks_.tiles, tile_key_);
   rebuild_blocks();
+  ++sorts_;
 }
 
 template class ExplicitStep<float, 2>;

@@ -1,8 +1,12 @@
 #include "solvers/grid_update.hpp"
 
+#include <spdlog/fmt/fmt.h>
+
+#include <cmath>
 #include <cstring>
 #include <numeric>
 
+#include "core/error.hpp"
 #include "core/parallel_host.hpp"
 #include "fields/body_force.hpp"
 
@@ -102,6 +106,7 @@ void GridUpdate<T, Dim>::update_from(const Blocks<Dim>& blocks, const Sum& sum, 
     if (model_.body_force) apply_body_force(blocks, summed_[k], constants, dt, time);
     if (contact_blocks_.obstacles(summed_[k])) apply_obstacles(blocks, summed_[k]);
   });
+  if (model_.body_force) refuse_bad_force(blocks, time);
   parallel_for_host("jaxmpm::walls", at_walls_.size(), [&](std::size_t w) { update_wall_block(blocks, at_walls_[w], constants); });
 }
 
@@ -126,6 +131,7 @@ void GridUpdate<T, Dim>::apply_body_force(const Blocks<Dim>& blocks, std::size_t
   for (int n = 0; n < cells; ++n) {
     const bool some = own[4 * n] > constants.mass_cut_off;
     const Point b_i = some ? field.at(place(node_of<Dim>(first, n)), time) : Point{};
+    if (!std::isfinite(b_i[0] + b_i[1] + b_i[2])) note_bad_force(b * std::size_t(cells) + std::size_t(n));
     for (int c = 0; c < Dim; ++c) {
       const T step = T(dt * b_i[std::size_t(c)]), kept = step - constants.damped * step;
       force[n * Dim + c] = step;
@@ -133,6 +139,23 @@ void GridUpdate<T, Dim>::apply_body_force(const Blocks<Dim>& blocks, std::size_t
       if (kernels_.planes == 2) own[4 * (cells + n) + 1 + c] += kept;
     }
   }
+}
+
+/// Keeps the first of the nodes where the body force is no number.
+template <class T, int Dim>
+void GridUpdate<T, Dim>::note_bad_force(std::size_t node) {
+  std::size_t known = bad_force_.load();
+  while (node < known && !bad_force_.compare_exchange_weak(known, node)) continue;
+}
+
+template <class T, int Dim>
+void GridUpdate<T, Dim>::refuse_bad_force(const Blocks<Dim>& blocks, double time) {
+  const std::size_t node = bad_force_.exchange(none);
+  if (node == none) return;
+  const Point x = place(node_of<Dim>(first_node<Dim>(blocks.index[node / std::size_t(cells)]), int(node % std::size_t(cells))));
+  std::string where = fmt::format("({:.6g}, {:.6g}", x[0], x[1]);
+  if (Dim == 3) where += fmt::format(", {:.6g}", x[2]);
+  throw NumericsError(fmt::format("/body_force is not a finite number at the node {}) at {:.6g} s, where there is material", where, time));
 }
 
 template <class T, int Dim>

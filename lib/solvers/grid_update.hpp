@@ -1,5 +1,7 @@
 #pragma once
 // The grid update of a step on the host (Eqs 13–15): sums of the arenas, and what walls and obstacles do to the nodes of a block.
+#include <atomic>
+
 #include "kernels/step_kernels.hpp"
 #include "kernels/wall_node.hpp"
 #include "solvers/contact_blocks.hpp"
@@ -71,12 +73,17 @@ class GridUpdate {
   template <class Sum>
   void update_from(const Blocks<Dim>& blocks, const Sum& sum, double dt, double time);
   void update_block(std::size_t b, const GridConstants<T, Dim>& constants);
+  void note_bad_force(std::size_t node);
+  /// Throws NumericsError where a node was noted.
+  void refuse_bad_force(const Blocks<Dim>& blocks, double time);
   void apply_body_force(const Blocks<Dim>& blocks, std::size_t b, const GridConstants<T, Dim>& constants, double dt, double time);
   void update_wall_block(const Blocks<Dim>& blocks, std::size_t b, const GridConstants<T, Dim>& constants);
   void apply_obstacles(const Blocks<Dim>& blocks, std::size_t b);
   void record(std::size_t b, std::uint32_t obstacle, const ObstacleContact<T, Dim>& done);
   bool touches(std::size_t b) const { return contact_blocks_.wall_slot()[b] >= 0 || contact_blocks_.obstacles(b); }
 
+  static constexpr std::size_t none = ~std::size_t(0);
+  std::atomic<std::size_t> bad_force_{none};  // [block][node]
   const Model& model_;
   StepKernels<T, Dim> kernels_;
   ContactBlocks<T, Dim> contact_blocks_;

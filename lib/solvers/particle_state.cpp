@@ -106,7 +106,7 @@ BodySnapshot body_snapshot(const Model& model, const Body& body, const MaterialK
   s.pressure.resize(fields.pressure ? n : 0), s.stress.resize(fields.stress ? n * 6 : 0);
   s.velocity_gradient.resize(fields.velocity_gradient ? n * Dim * Dim : 0);
   s.plastic_strain.resize(fields.plastic_strain ? n : 0), s.strain_energy.resize(fields.energy ? n : 0);
-  const double rho0 = std::visit([](const auto& m) { return m.density; }, body.material);
+  const double rho0 = deck::reference_density(body.material);
   parallel_for_host_static("jaxmpm::snapshot", n, [&](std::size_t i) {
     const std::size_t a = slots[i];
     const double e = double(p.compression[a]), mass = double(p.mass[a]), density = rho0 * (1 + e);
@@ -201,7 +201,8 @@ void remove_leavers(Particles<T, Dim>& p) {
 }
 
 template <class T, int Dim>
-void check_particles(const Model& model, const Body& body, const Particles<T, Dim>& p, std::size_t begin, std::size_t end) {
+void check_particles(const Model& model, const Body& body, const MaterialKernel<T, Dim>& material, const Particles<T, Dim>& p,
+                     std::size_t begin, std::size_t end) {
   for (std::size_t a = begin; a < end; ++a) {
     bool inside = true, finite = std::isfinite(p.compression[a]) && p.compression[a] > T(-1) && p.compression[a] < T(1e6);
     std::ostringstream place;
@@ -211,7 +212,9 @@ void check_particles(const Model& model, const Body& body, const Particles<T, Di
       finite = finite && std::isfinite(X) && std::isfinite(p.velocity[d][a]);
       place << (d ? ", " : "") << model.domain_min[d] + X * model.cell_size;
     }
-    for (const auto& h : p.history) finite = finite && std::isfinite(h[a]);
+    double history[16] = {};
+    for (std::size_t k = 0; k < p.history.size(); ++k) history[k] = double(p.history[k][a]), finite = finite && std::isfinite(history[k]);
+    finite = finite && std::isfinite(material.wave_speed(double(p.compression[a]), history));
     if (inside && finite) continue;
     std::ostringstream text;
     text << "particle " << p.id[a] << " of body \"" << body.name << "\" at (" << place.str() << ") "
@@ -233,7 +236,8 @@ template void restore_state(const std::vector<RawArray>&, std::vector<Particles<
                             StepNumbers&, bool);
 template void release_leavers(const Model&, Particles<float, 2>&, std::size_t, std::size_t);
 template void remove_leavers(Particles<float, 2>&);
-template void check_particles(const Model&, const Body&, const Particles<float, 2>&, std::size_t, std::size_t);
+template void check_particles(const Model&, const Body&, const MaterialKernel<float, 2>&, const Particles<float, 2>&, std::size_t,
+                              std::size_t);
 template Particles<float, 3> first_particles(const Model&, const Body&, const MaterialKernel<float, 3>&, double&);
 template double stable_step(const Model&, const MaterialKernels<float, 3>&, double);
 template Slots all_slots(const Particles<float, 3>&, bool);
@@ -245,7 +249,8 @@ template void restore_state(const std::vector<RawArray>&, std::vector<Particles<
                             StepNumbers&, bool);
 template void release_leavers(const Model&, Particles<float, 3>&, std::size_t, std::size_t);
 template void remove_leavers(Particles<float, 3>&);
-template void check_particles(const Model&, const Body&, const Particles<float, 3>&, std::size_t, std::size_t);
+template void check_particles(const Model&, const Body&, const MaterialKernel<float, 3>&, const Particles<float, 3>&, std::size_t,
+                              std::size_t);
 template Particles<double, 2> first_particles(const Model&, const Body&, const MaterialKernel<double, 2>&, double&);
 template double stable_step(const Model&, const MaterialKernels<double, 2>&, double);
 template Slots all_slots(const Particles<double, 2>&, bool);
@@ -257,7 +262,8 @@ template void restore_state(const std::vector<RawArray>&, std::vector<Particles<
                             std::vector<std::int64_t>&, StepNumbers&, bool);
 template void release_leavers(const Model&, Particles<double, 2>&, std::size_t, std::size_t);
 template void remove_leavers(Particles<double, 2>&);
-template void check_particles(const Model&, const Body&, const Particles<double, 2>&, std::size_t, std::size_t);
+template void check_particles(const Model&, const Body&, const MaterialKernel<double, 2>&, const Particles<double, 2>&, std::size_t,
+                              std::size_t);
 template Particles<double, 3> first_particles(const Model&, const Body&, const MaterialKernel<double, 3>&, double&);
 template double stable_step(const Model&, const MaterialKernels<double, 3>&, double);
 template Slots all_slots(const Particles<double, 3>&, bool);
@@ -269,6 +275,7 @@ template void restore_state(const std::vector<RawArray>&, std::vector<Particles<
                             std::vector<std::int64_t>&, StepNumbers&, bool);
 template void release_leavers(const Model&, Particles<double, 3>&, std::size_t, std::size_t);
 template void remove_leavers(Particles<double, 3>&);
-template void check_particles(const Model&, const Body&, const Particles<double, 3>&, std::size_t, std::size_t);
+template void check_particles(const Model&, const Body&, const MaterialKernel<double, 3>&, const Particles<double, 3>&, std::size_t,
+                              std::size_t);
 
 }  // namespace jaxmpm

@@ -59,8 +59,9 @@ void release_leavers(const Model& model, Particles<T, Dim>& particles, std::size
 template <class T, int Dim>
 void remove_leavers(Particles<T, Dim>& particles);
 
-/// Throws NumericsError when one of particles [begin, end) has left the domain or has a state that is not finite.
+/// Throws NumericsError when one of particles [begin, end) has left the domain or has a state, or a wave speed, that is not finite.
 template <class T, int Dim>
-void check_particles(const Model& model, const Body& body, const Particles<T, Dim>& particles, std::size_t begin, std::size_t end);
+void check_particles(const Model& model, const Body& body, const MaterialKernel<T, Dim>& material, const Particles<T, Dim>& particles,
+                     std::size_t begin, std::size_t end);
 
 }  // namespace jaxmpm

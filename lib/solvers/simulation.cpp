@@ -2,28 +2,14 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
+
 #include "core/error.hpp"
 #include "core/runtime.hpp"
+#include "core/stopwatch.hpp"
 
 namespace jaxmpm {
 namespace {
-
-double since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-/// Adds the time until the end of its scope to a sum.
-class Timed {
- public:
-  explicit Timed(double& sum) : sum_(sum), begin_(std::chrono::steady_clock::now()) {}
-  ~Timed() { sum_ += since(begin_); }
-  Timed(const Timed&) = delete;
-  Timed& operator=(const Timed&) = delete;
-
- private:
-  double& sum_;
-  std::chrono::steady_clock::time_point begin_;
-};
 
 /// Adds the time until the end of its scope to a sum, and takes its processor time from the run's: that is the one of steps alone.
 class OutputTimed {
@@ -60,7 +46,7 @@ std::vector<std::string> Simulation::notices() const {
 }
 
 RunOutcome Simulation::run(const RunStart& start) {
-  started_ = last_checkpoint_ = Clock::now();
+  started_.restart(), last_checkpoint_.restart();
   now_ = start.at;
   outcome_ = {start.at, false, start.seconds, 0, 0, {}};
   const double cpu_before = processor_seconds();
@@ -96,8 +82,8 @@ void Simulation::loop() {
 Moment Simulation::next() const { return control_.after_next(now_, control_.is_automatic() ? solver_.stable_step() : 0); }
 
 void Simulation::step() {
-  const Moment after = next();
-  attempted_ = after;
+  attempted_ = {now_.step + 1, now_.time, 0, now_.time};  // choosing the step may fail already
+  const Moment after = attempted_ = next();
   // The end shortens its step and is recorded out of turn. The checkpoint of a finished run is therefore the state before its last step,
   // from which a later end continues as if this one had never been.
   if (control_.done(after) && !checkpointed_) write_checkpoint();
@@ -133,33 +119,33 @@ void Simulation::record_frame() {
 
 bool Simulation::should_stop() const {
   if (settings_.stop_requested && settings_.stop_requested()) return true;
-  return settings_.walltime_seconds > 0 && since(started_) >= settings_.walltime_seconds;
+  return settings_.walltime_seconds > 0 && started_.seconds() >= settings_.walltime_seconds;
 }
 
 void Simulation::checkpoint_if_due() {
-  if (settings_.checkpoint_seconds > 0 && since(last_checkpoint_) >= settings_.checkpoint_seconds && !checkpointed_) write_checkpoint();
+  if (settings_.checkpoint_seconds > 0 && last_checkpoint_.seconds() >= settings_.checkpoint_seconds && !checkpointed_) write_checkpoint();
 }
 
 void Simulation::write_checkpoint() {
   remember();
   const OutputTimed timed(outcome_.output.checkpoints, outcome_.cpu_seconds);
   recorder_.checkpoint(now_, remembered_, outcome_.seconds);
-  last_checkpoint_ = Clock::now();
+  last_checkpoint_.restart();
   checkpointed_ = true;
 }
 
 void Simulation::remember() {
   const OutputTimed timed(outcome_.output.checkpoints, outcome_.cpu_seconds);
-  const Clock::time_point begin = Clock::now();
+  const Stopwatch watch;
   remembered_ = solver_.save();
   remembered_at_ = now_;
-  remember_cost_ = since(begin);
-  last_remembered_ = Clock::now();
+  remember_cost_ = watch.seconds();
+  last_remembered_.restart();
 }
 
 void Simulation::remember_if_cheap() {
   constexpr double at_least = 1;  // s
-  if (since(last_remembered_) >= std::max(at_least, rescue_share * remember_cost_)) remember();
+  if (last_remembered_.seconds() >= std::max(at_least, rescue_share * remember_cost_)) remember();
 }
 
 Moment Simulation::return_to(std::uint64_t step) {

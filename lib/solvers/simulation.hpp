@@ -1,10 +1,10 @@
 #pragma once
 // The run loop: steps, and at the right ones frames, gauges and checkpoints; stops on request; rescues the last good state when a step
 // fails.
-#include <chrono>
 #include <functional>
-#include "core/error.hpp"
 
+#include "core/error.hpp"
+#include "core/stopwatch.hpp"
 #include "solvers/solver.hpp"
 #include "solvers/time_control.hpp"
 
@@ -61,7 +61,6 @@ class Simulation {
   RunOutcome run(const RunStart& start = {});
 
  private:
-  using Clock = std::chrono::steady_clock;
   void loop();
   void step();
   void record();
@@ -91,7 +90,7 @@ class Simulation {
   std::vector<RawArray> remembered_;
   Moment remembered_at_;
   double remember_cost_ = 0;
-  Clock::time_point started_, last_checkpoint_, last_remembered_;
+  Stopwatch started_, last_checkpoint_, last_remembered_;
 };
 
 }  // namespace jaxmpm

@@ -1,5 +1,6 @@
 // Dual numbers against closed forms of their derivatives.
 #include "core/dual.hpp"
+#include "core/pack.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -65,6 +66,12 @@ TEST_CASE("a NaN in the first argument comes through max and min") {
   CHECK(std::isnan(min(nan, 1.0)));
   CHECK(std::isnan(max(std::nanf(""), 1.0f)));
   CHECK(std::isnan(min(std::nanf(""), 1.0f)));
+  using P = Pack<double, 2>;
+  CHECK(std::isnan(max(P(nan), P(1.0))[1]));
+  CHECK(std::isnan(min(P(nan), P(1.0))[1]));
+  using D = Dual<double, 1>;
+  CHECK(std::isnan(value_of(max(D(nan), D(1.0)))));
+  CHECK(std::isnan(value_of(min(D(nan), D(1.0)))));
 }
 
 }  // namespace

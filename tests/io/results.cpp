@@ -29,6 +29,7 @@ deck::Deck ballistic_deck() {
   deck.time = {0.3, std::nullopt, 0.4};
   deck.output.interval = 0.05;
   deck.output.gauge_interval = 0.01;
+  deck.output.fields = {"velocity", "pressure"};
   deck.as_given = "{ /* given */ }";
   deck.resolved = R"({"time": {"end": 0.3}, "gravity": [0, -10], "output": {"interval": 0.05}})";
   deck.gauges["momentum"] = deck::MomentumGauge{};

@@ -7,6 +7,7 @@ import h5py
 import numpy as np
 
 from harness import DECK, DONE, IO, NUMERICS, PROGRAM, ProgramTest, datasets, small_deck
+import results
 
 
 class Results(ProgramTest):
@@ -156,6 +157,23 @@ class ExitCodes(ProgramTest):
     def test_unknown_particle_id_is_2(self):
         deck = small_deck(gauges={"p": {"kind": "particles", "ids": [10**6], "fields": ["velocity"]}})
         self.assertIn("/gauges/p/ids/0", self.run_deck(self.write(deck), "out", code=DECK))
+
+    def test_a_run_that_fails_writes_no_frame_twice(self):
+        self.run_deck(self.write(small_deck(time={"end": 1.0, "step": 0.02}, output={"interval": 0.02})), "out", code=NUMERICS)
+        steps = [frame.step for frame in results.Results(self.scratch / "out").frames]
+        self.assertEqual(steps, sorted(set(steps)))
+
+    def test_a_body_force_that_is_no_number_is_named(self):
+        deck = small_deck(body_force=[0, "log(0.05 - t)"])
+        said = self.run_deck(self.write(deck), "out", code=NUMERICS)
+        self.assertIn("/body_force is not a finite number at the node", said)
+
+    def test_a_gap_below_material_that_presses_is_noted(self):
+        deck = small_deck()
+        deck["bodies"] = [{"name": "pool", "material": "water", "shape": {"box": {"min": [0, 0], "max": [0.3, 0.1]}}, "initial_stress": "hydrostatic"},
+                          {"name": "drop", "material": "water", "shape": {"box": {"min": [0.1, 0.3], "max": [0.2, 0.4]}}}]
+        deck["gauges"] = {}
+        self.assertIn("counts a gap of 0.2 m", self.expect(DONE, "check", self.write(deck)))
 
     def test_unstable_run_is_3_and_leaves_no_nan(self):
         deck = self.write(small_deck(time={"end": 1.0, "step": 0.02}, output={"interval": 0.02}))

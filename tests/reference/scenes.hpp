@@ -76,7 +76,7 @@ inline Body block(const Model& model, const std::string& name, const deck::Mater
         body.initial.position.push_back(
             {lower[0] + (a + 0.5) / k, lower[1] + (b + 0.5) / k, model.dim == 3 ? lower[2] + (c + 0.5) / k : 0});
         body.initial.velocity.push_back({0, 0, 0});
-        body.initial.mass.push_back(reference_density(material) * volume);
+        body.initial.mass.push_back(deck::reference_density(material) * volume);
         body.initial.compression.push_back(0);
       }
   return body;

@@ -24,8 +24,6 @@ JAXMPM_INLINE void update_particles_adjoint(const Particles<typename Sch::T, Sch
   using P = Pack<T, W>;
   const auto component = [&](int quad, int c) { return gathered[4 * quad + 1 + c]; };
   const auto by = [&](int quad, int c) -> P& { return quads[4 * quad + 1 + c]; };
-  const T slope_scale = T(1) / step.cell_size;
-  const T moment_scale = Sch::S > 2 ? T(1 / Bspline<Sch::S>::second_moment) / step.cell_size : T(0);
 
   for (int c = 0; c < Dim; ++c) {  // x ← x + Δt v, and the velocity
     alignas(64) T place[W];
@@ -48,7 +46,7 @@ JAXMPM_INLINE void update_particles_adjoint(const Particles<typename Sch::T, Sch
   }
   if constexpr (Sch::affine) {
     constexpr int from = Sch::affine_by_moments ? G::moments : G::slopes;
-    const P scale(Sch::affine_by_moments ? moment_scale : slope_scale);
+    const P scale(Sch::affine_scale / step.cell_size);
     for (int c = 0; c < Dim; ++c)
       for (int k = 0; k < Dim; ++k) {
         T* by_affine = bar.affine[std::size_t(c * Dim + k)].data() + s;
@@ -57,7 +55,7 @@ JAXMPM_INLINE void update_particles_adjoint(const Particles<typename Sch::T, Sch
       }
   }
   constexpr int from = Sch::mls ? G::moments : G::slopes;
-  const P rate(step.dt * (Sch::mls ? moment_scale : slope_scale));
+  const P rate(step.dt * (Sch::gradient_scale / step.cell_size));
   alignas(64) T H[Dim * Dim][W], by_H[Dim * Dim][W];
   for (int c = 0; c < Dim; ++c)
     for (int k = 0; k < Dim; ++k) (rate * component(from + k, c)).store(H[c * Dim + k]);

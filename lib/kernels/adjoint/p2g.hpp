@@ -83,8 +83,7 @@ JAXMPM_INLINE void coefficients_adjoint(const Particles<typename Sch::T, Sch::Di
   alignas(64) T sigma[Symmetric<T, Dim>::size][W], by_sigma[Symmetric<T, Dim>::size][W];
   material.stress(p, s, count, sigma);
   const P e = load(p.compression.data() + s, count), growth = P(T(1)) / (P(T(1)) + e);
-  const T per_cell = Sch::mls ? T(1 / Bspline<Sch::S>::second_moment) / step.cell_size : T(1) / step.cell_size;
-  const P per_mass = P(-step.dt * per_cell / material.reference_density()) * growth, impulse = m * per_mass;
+  const P per_mass = P(-step.dt * (Sch::gradient_scale / step.cell_size) / material.reference_density()) * growth, impulse = m * per_mass;
   P by_impulse(T(0)), by_stress[Symmetric<T, Dim>::size];
   for (P& b : by_stress) b = P(T(0));
   for (int c = 0; c < Dim; ++c)

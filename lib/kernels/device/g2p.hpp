@@ -27,15 +27,13 @@ struct ThreadReport {
   bool unsound = false;
 };
 
-/// What turns sums over nodes into movements (cells), slopes and moments into gradients (1/s).
+/// What turns sums over nodes into movements (cells), the affine field and the velocity gradient (1/s).
 template <class Sch>
 struct GatherScales {
   using T = typename Sch::T;
-  T move, slope, moment;
+  T move, affine, gradient;
   explicit JAXMPM_INLINE GatherScales(const StepConstants<T>& step)
-      : move(step.dt / step.cell_size),
-        slope(T(1) / step.cell_size),
-        moment(Sch::S > 2 ? T(1 / Bspline<Sch::S>::second_moment) / step.cell_size : T(0)) {}
+      : move(step.dt / step.cell_size), affine(Sch::affine_scale / step.cell_size), gradient(Sch::gradient_scale / step.cell_size) {}
 };
 
 /// Σ over a particle's stencil of factor × node, of `count` values of a plane's records from value `first` on.
@@ -167,8 +165,8 @@ struct GatherTiles {
     for (int c = 0; c < Dim; ++c)
       for (int k = 0; k < Dim; ++k) {
         if constexpr (Sch::affine)
-          particles.affine(c * Dim + k, p) = Sch::affine_by_moments ? per.moment * sum.moments[k][c] : per.slope * sum.slopes[k][c];
-        const T gradient = Sch::mls ? per.moment * sum.moments[k][c] : per.slope * sum.slopes[k][c];
+          particles.affine(c * Dim + k, p) = per.affine * (Sch::affine_by_moments ? sum.moments : sum.slopes)[k][c];
+        const T gradient = per.gradient * (Sch::mls ? sum.moments : sum.slopes)[k][c];
         H(c, k) = step.dt * gradient;
         if (particles.first_gradient >= 0) particles.gradient(c * Dim + k, p) = gradient;
       }

@@ -57,30 +57,43 @@ class StepGift {
   static constexpr bool second_plain = false;                                 // something goes with w to the second plane
   static constexpr int full = Sch::flip ? 1 : 0;                              // the plane that gets what goes with d and g
   JAXMPM_INLINE StepGift(const Law& law, const StepConstants<T>& step)
-      : law_(law),
-        affine_(step.cell_size),
-        impulse_(-step.dt * (Sch::mls ? T(1 / Bspline<Sch::S>::second_moment) : T(1)) / step.cell_size / law.density) {}
+      : law_(law), affine_(step.cell_size), impulse_(-step.dt * Sch::gradient_scale / step.cell_size / law.density) {}
 
-  /// Writes a particle's record: its offset in the cell, its mass, and the share of each component.
-  JAXMPM_INLINE void write(const ParticleFields<T, Dim>& f, std::size_t p, const Cell<Sch>& cell, T* record) const {
+  /// A particle's shares of mass, which goes with the weight alone, and of momentum; with FLIP what goes with d and g is the second
+  /// plane's.
+  JAXMPM_INLINE void share(const ParticleFields<T, Dim>& f, std::size_t p, Share<T, Dim> (&shares)[1 + Dim]) const {
     constexpr int history = Law::template history_size<Dim>();
     T h[history > 0 ? history : 1];
     for (int k = 0; k < history; ++k) h[k] = f.history(k, p);
     const T e = f.compression(p), mass = f.mass(p);
     const Symmetric<T, Dim> sigma = law_.template stress<T, Dim>(e, h);
     const T by_stress = mass * impulse_ / (T(1) + e), by_affine = mass * affine_;
-    for (int k = 0; k < Dim; ++k) *record++ = cell.offset[k];
-    *record++ = mass;
+    shares[0].plain = mass;
     for (int c = 0; c < Dim; ++c) {
-      *record++ = mass * f.velocity(c, p);
+      Share<T, Dim>& q = shares[1 + c];
+      q.plain = mass * f.velocity(c, p);
       for (int k = 0; k < Dim; ++k) {
         const T impulse = by_stress * sigma(c, k);
         T affine(0);
         if constexpr (Sch::affine) affine = by_affine * f.affine(c * Dim + k, p);
-        if constexpr (with_d) record[k] = Sch::mls ? affine + impulse : affine;
-        if constexpr (with_g) record[(with_d ? Dim : 0) + k] = impulse;
+        if constexpr (with_d) q.d[k] = Sch::mls ? affine + impulse : affine;
+        if constexpr (with_g) q.g[k] = impulse;
       }
-      record += (with_d ? Dim : 0) + (with_g ? Dim : 0);
+    }
+  }
+
+  /// Writes a particle's record: its offset in the cell, its mass, and the share of each component.
+  JAXMPM_INLINE void write(const ParticleFields<T, Dim>& f, std::size_t p, const Cell<Sch>& cell, T* record) const {
+    Share<T, Dim> shares[1 + Dim];
+    share(f, p, shares);
+    for (int k = 0; k < Dim; ++k) *record++ = cell.offset[k];
+    *record++ = shares[0].plain;
+    for (int c = 1; c <= Dim; ++c) {
+      *record++ = shares[c].plain;
+      if constexpr (with_d)
+        for (int k = 0; k < Dim; ++k) *record++ = shares[c].d[k];
+      if constexpr (with_g)
+        for (int k = 0; k < Dim; ++k) *record++ = shares[c].g[k];
     }
   }
 };

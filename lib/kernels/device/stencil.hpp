@@ -25,12 +25,12 @@ JAXMPM_INLINE const Quad<T>& quad_at(const T* records, int node) {
   return *reinterpret_cast<const Quad<T>*>(records + 4 * node);
 }
 
-/// The nodes of a stencil in an arena, in the order of their indices; those of a layer have the same first index.
+/// The nodes of a stencil in an arena, in the order of their indices.
 template <class Sch>
 struct StencilNodes {
   static constexpr int S = Sch::S, Dim = Sch::Dim;
   static constexpr int count(int axes) { return axes == 0 ? 1 : S * count(axes - 1); }
-  static constexpr int all = count(Dim), layer = count(Dim - 1), rows = all / S;
+  static constexpr int all = count(Dim), rows = all / S;
   /// From one node to the next along an axis.
   static constexpr int step(int axis) { return axis == Dim - 1 ? 1 : Sch::Shape::A * step(axis + 1); }
   /// Node n from the stencil's first.

@@ -115,6 +115,20 @@ class Contraction {
   }
 };
 
+/// Calls each(p, its cell, arena) for the particles of the team's tile, a thread a particle; the arena, in the team's memory, holds what
+/// `nodes` ([block][own]) has at the tile's nodes.
+template <class Sch, class Team, class T, int Dim, class Each>
+JAXMPM_INLINE void for_each_particle(const Team& team, const TileTable<T, Dim>& table, const int* neighbour, const T* nodes,
+                                     const ParticleFields<T, Dim>& particles, const Each& each) {
+  const Tile tile = table.tiles[team.league_rank()];
+  const Index<Dim> origin = table.origin(tile);
+  T* arena = team_memory<T>(team, Sch::arena_size);
+  load_arena<Sch>(team, neighbour + std::size_t(tile.block) * Sch::Shape::neighbours, nodes, arena);
+  team.team_barrier();
+  for (std::size_t p = tile.begin + std::size_t(team.team_rank()); p < tile.end; p += std::size_t(team.team_size()))
+    each(p, Cell<Sch>(Position<Dim>(particles, p), origin), arena);
+}
+
 /// Derivatives by constants, added up by all teams in a table of doubles: by the model's, then of each body by its law's constants, with
 /// its count of kinks.
 struct ConstantBars {
@@ -146,6 +160,24 @@ struct MaterialBars {
   static JAXMPM_INLINE void give_sum(const Team& team, double mine, double* to) {
     const double sum = team_sum(team, mine);
     if (team.team_rank() == 0 && sum != 0) Kokkos::atomic_add(to, sum);
+  }
+};
+
+/// A particle's compression and history, with the derivatives by them and by the law's constants.
+template <class Law, class T, int Dim>
+struct StateBars {
+  static constexpr int history = Law::template history_size<Dim>(), slots = history > 0 ? history : 1;
+  T e, by_e, h[slots], by_h[slots], by_constants[MaterialBars<Law>::count] = {};
+
+  JAXMPM_INLINE StateBars(const ParticleFields<T, Dim>& particles, const ParticleFields<T, Dim>& bars, std::size_t p)
+      : e(particles.compression(p)), by_e(bars.compression(p)) {
+    for (int k = 0; k < history; ++k) h[k] = particles.history(k, p), by_h[k] = bars.history(k, p);
+  }
+  /// Writes the derivatives back; those by constants are added to the thread's.
+  JAXMPM_INLINE void store(const ParticleFields<T, Dim>& bars, std::size_t p, MaterialBars<Law>& mine) const {
+    bars.compression(p) = by_e;
+    for (int k = 0; k < history; ++k) bars.history(k, p) = by_h[k];
+    mine.add(by_constants);
   }
 };
 

@@ -43,15 +43,10 @@ struct GatherAdjoint {
   double *flip_fraction, *body;  // places of ConstantBars
 
   JAXMPM_FUNCTION void operator()(const Team<Space>& team) const {
-    const Tile tile = table.tiles[team.league_rank()];
-    const Index<Dim> origin = table.origin(tile);
-    T* arena = team_memory<T>(team, Sch::arena_size);
-    load_arena<Sch>(team, neighbour + std::size_t(tile.block) * Sch::Shape::neighbours, grid, arena);
-    team.team_barrier();
     MaterialBars<Law> mine;
     double by_flip = 0;
-    for (std::size_t p = tile.begin + std::size_t(team.team_rank()); p < tile.end; p += std::size_t(team.team_size()))
-      update(p, origin, arena, mine, by_flip);
+    for_each_particle<Sch>(team, table, neighbour, grid, particles,
+                           [&](std::size_t p, const Cell<Sch>& cell, const T* arena) { update(p, cell, arena, mine, by_flip); });
     mine.give(team, body);
     if constexpr (Sch::flip) MaterialBars<Law>::give_sum(team, by_flip, flip_fraction);
   }
@@ -65,8 +60,7 @@ struct GatherAdjoint {
     JAXMPM_INLINE T& gradient(int c, int k) { return Sch::mls ? component[c].d[k] : component[c].g[k]; }
   };
 
-  JAXMPM_INLINE void update(std::size_t p, const Index<Dim>& origin, const T* arena, MaterialBars<Law>& mine, double& by_flip) const {
-    const Cell<Sch> cell(Position<Dim>(particles, p), origin);
+  JAXMPM_INLINE void update(std::size_t p, const Cell<Sch>& cell, const T* arena, MaterialBars<Law>& mine, double& by_flip) const {
     const Factors<Sch> factors(cell.offset);
     const Gathered<Sch> sum(factors, cell.base, arena);
     const GatherScales<Sch> scales(step);
@@ -85,7 +79,7 @@ struct GatherAdjoint {
       }
       if constexpr (Sch::affine)
         for (int k = 0; k < Dim; ++k) {
-          by.affine(c, k) += (Sch::affine_by_moments ? scales.moment : scales.slope) * bars.affine(c * Dim + k, p);
+          by.affine(c, k) += scales.affine * bars.affine(c * Dim + k, p);
           bars.affine(c * Dim + k, p) = T(0);
         }
     }
@@ -97,20 +91,15 @@ struct GatherAdjoint {
   /// The stress update: from its end values to its start values and the increment of deformation.
   JAXMPM_INLINE void material(std::size_t p, const Gathered<Sch>& sum, const GatherScales<Sch>& scales, By& by,
                               MaterialBars<Law>& mine) const {
-    constexpr int history = Law::template history_size<Dim>();
-    const T rate = step.dt * (Sch::mls ? scales.moment : scales.slope);
+    const T rate = step.dt * scales.gradient;
     Matrix<T, Dim> H, by_H;
     for (int c = 0; c < Dim; ++c)
       for (int k = 0; k < Dim; ++k) H(c, k) = rate * (Sch::mls ? sum.moments[k][c] : sum.slopes[k][c]);
-    T h[history > 0 ? history : 1], by_h[history > 0 ? history : 1], by_constants[MaterialBars<Law>::count] = {};
-    for (int k = 0; k < history; ++k) h[k] = particles.history(k, p), by_h[k] = bars.history(k, p);
-    T by_e = bars.compression(p);
-    const auto kink = law.template update_adjoint<T, Dim>(H, step.dt, particles.compression(p), h, by_e, by_h, by_H, by_constants);
-    bars.compression(p) = by_e;
-    for (int k = 0; k < history; ++k) bars.history(k, p) = by_h[k];
+    StateBars<Law, T, Dim> state(particles, bars, p);
+    const auto kink = law.template update_adjoint<T, Dim>(H, step.dt, state.e, state.h, state.by_e, state.by_h, by_H, state.by_constants);
+    state.store(bars, p, mine);
     for (int c = 0; c < Dim; ++c)
       for (int k = 0; k < Dim; ++k) by.gradient(c, k) += rate * by_H(c, k);
-    mine.add(by_constants);
     mine.kinks += kink ? 1 : 0;
   }
 

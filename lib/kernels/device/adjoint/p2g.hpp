@@ -9,8 +9,7 @@ template <class Sch, class Law, class Space>
 struct ScatterAdjoint {
   using T = typename Sch::T;
   using Gift = StepGift<Sch, Law>;
-  using Record = Records<Sch, Gift>;
-  static constexpr int Dim = Sch::Dim, history = Law::template history_size<Dim>(), slots = history > 0 ? history : 1;
+  static constexpr int Dim = Sch::Dim;
   static constexpr std::size_t scratch = Sch::arena_size * sizeof(T) + 16;
   static constexpr int threads = 128, resident = sizeof(T) == 4 ? 3 : 2;
   ParticleFields<T, Dim> particles, bars;
@@ -22,18 +21,12 @@ struct ScatterAdjoint {
   double* body;          // of ConstantBars
 
   JAXMPM_FUNCTION void operator()(const Team<Space>& team) const {
-    const Tile tile = table.tiles[team.league_rank()];
-    const Index<Dim> origin = table.origin(tile);
-    T* arena = team_memory<T>(team, Sch::arena_size);
-    load_arena<Sch>(team, neighbour + std::size_t(tile.block) * Sch::Shape::neighbours, by_sums, arena);
-    team.team_barrier();
     MaterialBars<Law> mine;
-    for (std::size_t p = tile.begin + std::size_t(team.team_rank()); p < tile.end; p += std::size_t(team.team_size())) {
-      const Cell<Sch> cell(Position<Dim>(particles, p), origin);
+    for_each_particle<Sch>(team, table, neighbour, by_sums, particles, [&](std::size_t p, const Cell<Sch>& cell, const T* arena) {
       const Factors<Sch> factors(cell.offset);
       move(p, cell, factors, arena);
       fields(p, Sums(factors, cell.base, arena), mine);
-    }
+    });
     mine.give(team, body);
   }
 
@@ -65,18 +58,8 @@ struct ScatterAdjoint {
 
   /// The factors follow the particle's place.
   JAXMPM_INLINE void move(std::size_t p, const Cell<Sch>& cell, const Factors<Sch>& factors, const T* arena) const {
-    T record[Record::used];
-    Gift(law, step).write(particles, p, cell, record);
     Share<T, Dim> shares[1 + Dim];  // of mass and momentum
-    shares[0].plain = record[Dim];
-    for (int c = 0; c < Dim; ++c) {
-      const T* of = record + Record::first + c * Record::of_component;
-      shares[1 + c].plain = of[0];
-      for (int k = 0; k < Dim; ++k) {
-        if constexpr (Gift::with_d) shares[1 + c].d[k] = of[1 + k];
-        if constexpr (Gift::with_g) shares[1 + c].g[k] = of[1 + (Gift::with_d ? Dim : 0) + k];
-      }
-    }
+    Gift(law, step).share(particles, p, shares);
     T by_x[Dim] = {};
     if constexpr (Sch::flip) {
       Contraction<Sch, false, false, 0, 1 + Dim>(factors, cell.offset, shares).add(arena, cell.base, by_x);
@@ -90,7 +73,7 @@ struct ScatterAdjoint {
 
   /// What the derivatives by a particle's shares bring to its fields.
   JAXMPM_INLINE void fields(std::size_t p, const Sums& by, MaterialBars<Law>& mine) const {
-    const T m = particles.mass(p), e = particles.compression(p), growth = T(1) / (T(1) + e);
+    const T m = particles.mass(p);
     T by_mass = by.value[0];
     for (int c = 0; c < Dim; ++c) {
       by_mass += by.value[1 + c] * particles.velocity(c, p);
@@ -102,11 +85,10 @@ struct ScatterAdjoint {
           bars.affine(c * Dim + k, p) += m * by_affine;
         }
     }
-    T h[slots], by_h[slots], by_constants[MaterialBars<Law>::count] = {};
-    for (int k = 0; k < history; ++k) h[k] = particles.history(k, p), by_h[k] = bars.history(k, p);
-    const Symmetric<T, Dim> sigma = law.template stress<T, Dim>(e, h);
-    const T per_cell = (Sch::mls ? T(1 / Bspline<Sch::S>::second_moment) : T(1)) / step.cell_size;
-    const T per_mass = -step.dt * per_cell / law.density * growth, impulse = m * per_mass;
+    StateBars<Law, T, Dim> state(particles, bars, p);
+    const Symmetric<T, Dim> sigma = law.template stress<T, Dim>(state.e, state.h);
+    const T growth = T(1) / (T(1) + state.e);
+    const T per_mass = -step.dt * (Sch::gradient_scale / step.cell_size) / law.density * growth, impulse = m * per_mass;
     T by_impulse(0);
     Symmetric<T, Dim> by_sigma{};
     for (int c = 0; c < Dim; ++c)
@@ -117,12 +99,10 @@ struct ScatterAdjoint {
       }
     bars.mass(p) += by_mass + by_impulse * per_mass;
     const T by_volume = by_impulse * impulse;
-    T by_e = bars.compression(p) - by_volume * growth;
-    by_constants[0] = -by_volume / law.density;
-    law.template stress_adjoint<T, Dim>(e, h, by_sigma, by_e, by_h, by_constants);
-    bars.compression(p) = by_e;
-    for (int k = 0; k < history; ++k) bars.history(k, p) = by_h[k];
-    mine.add(by_constants);
+    state.by_e -= by_volume * growth;
+    state.by_constants[0] = -by_volume / law.density;
+    law.template stress_adjoint<T, Dim>(state.e, state.h, by_sigma, state.by_e, state.by_h, state.by_constants);
+    state.store(bars, p, mine);
   }
 };
 

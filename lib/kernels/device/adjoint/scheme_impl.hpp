@@ -1,4 +1,5 @@
 #pragma once
+#include "core/error.hpp"
 #include "kernels/device/adjoint/g2p.hpp"
 #include "kernels/device/adjoint/p2g.hpp"
 #include "kernels/device/adjoint/scheme.hpp"
@@ -54,7 +55,9 @@ template <class Sch, class Space>
 std::unique_ptr<BodyAdjointKernels<typename Sch::T, Sch::Dim, Space>> make_adjoint_body(const deck::Material& material) {
   using Base = BodyAdjointKernels<typename Sch::T, Sch::Dim, Space>;
   return with_law<typename Sch::T>(material, [](const auto& law) -> std::unique_ptr<Base> {
-    return std::make_unique<LawAdjointKernels<Sch, std::decay_t<decltype(law)>, Space>>(law);
+    using Law = std::decay_t<decltype(law)>;
+    if constexpr (Law::by_hand) return std::make_unique<LawAdjointKernels<Sch, Law, Space>>(law);
+    else throw Error(ExitCode::deck, "a GPU has no tape to differentiate this material by; use --backend cpu");
   });
 }
 

@@ -13,7 +13,7 @@ struct SnapshotBars {
 /// Adds those by a snapshot to those by the fields.
 template <class T, int Dim, class Law, class Space>
 struct AddSnapshot {
-  static constexpr int threads = 128, history = Law::template history_size<Dim>(), slots = history > 0 ? history : 1;
+  static constexpr int threads = 128;
   ParticleFields<T, Dim> particles, bars;
   SnapshotBars by;
   std::size_t count;
@@ -48,15 +48,11 @@ struct AddSnapshot {
   }
 
   JAXMPM_INLINE void add_stress(std::size_t p, const double* by_stress, MaterialBars<Law>& mine) const {
-    T h[slots], by_h[slots], by_constants[MaterialBars<Law>::count] = {};
-    for (int k = 0; k < history; ++k) h[k] = particles.history(k, p), by_h[k] = bars.history(k, p);
+    StateBars<Law, T, Dim> state(particles, bars, p);
     Symmetric<T, Dim> by_sigma{};
     for (int k = 0; k < by_sigma.size; ++k) by_sigma[k] = T(by_stress[k]);
-    T by_e = bars.compression(p);
-    law.template stress_adjoint<T, Dim>(particles.compression(p), h, by_sigma, by_e, by_h, by_constants);
-    bars.compression(p) = by_e;
-    for (int k = 0; k < history; ++k) bars.history(k, p) = by_h[k];
-    mine.add(by_constants);
+    law.template stress_adjoint<T, Dim>(state.e, state.h, by_sigma, state.by_e, state.by_h, state.by_constants);
+    state.store(bars, p, mine);
   }
 };
 
