@@ -73,11 +73,6 @@ bool Inversion::run() {
   } catch (const Stopped&) {
     take("stopped");
     return false;
-  } catch (const DeckError& error) {
-    take("failed");
-    std::vector<Problem> problems = error.problems;
-    for (Problem& problem : problems) problem.message += "; the search led there: give the unknown bounds that keep it out";
-    throw DeckError(std::move(problems));
   } catch (const NumericsError&) {
     take("failed");
     throw;
@@ -95,7 +90,7 @@ void Inversion::take(const std::string& stopped) {
 void Inversion::tell_evaluation() {
   directory_.write(state_);
   const RecordedEvaluation& last = loss_.evaluations().back();
-  if (last.diverged) return spdlog::info("        a run became unstable; a smaller change of the unknowns is tried");
+  if (last.diverged) return spdlog::info("        the run fails there; a smaller change of the unknowns is tried");
   if (!last.is_iteration()) return;
   const Variables gradient(last.derivative.begin(), last.derivative.begin() + static_cast<std::ptrdiff_t>(last.u.size()));
   spdlog::info("{:5}  loss {:.6e}  |gradient| {:.3e}{}  {:.3g} + {:.3g} s", ++iterations_, last.loss,

@@ -1,5 +1,7 @@
 #include "inverse/recorded_loss.hpp"
 
+#include <spdlog/spdlog.h>
+
 #include <algorithm>
 
 #include "core/error.hpp"
@@ -78,6 +80,9 @@ const RecordedEvaluation& RecordedLoss::evaluate(Kind kind, const Variables& u, 
     if (evaluations_.empty()) throw;
     fresh.diverged = true;
     reason = error.what();
+    if (!told_of_deck_)
+      spdlog::warn("{}; the search led there and tries a smaller change. Bounds of the unknown would keep it out.", reason);
+    told_of_deck_ = true;
   }
   evaluations_.push_back(std::move(fresh));
   ++replayed_;

@@ -61,7 +61,7 @@ class RecordedLoss : public LossFunction {
   std::size_t replayed_ = 0, peak_bytes_ = 0;
   std::function<void()> tell_;
   std::optional<Variables> steps_of_;  // renewed at the next evaluation that is computed
-  bool steps_asked_ = false;
+  bool steps_asked_ = false, told_of_deck_ = false;
 };
 
 }  // namespace jaxmpm
