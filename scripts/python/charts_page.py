@@ -10,11 +10,11 @@ HEAD = """# Speed and accuracy
 Made by `scripts/charts` from the data kept in [charts/](charts/); not to be edited by hand. What does each choice of scheme, basis, precision, cell size and number
 of particles cost, and what does it buy?
 
-- **Variants**: transfer (pic, flip, apic, tpic) × basis (linear, quadratic, cubic) × precision (f32, f64), over cell sizes and particles per cell, all with the automatic
-  step (`cfl` 0.4) and the spline gradient. The finest cells are spent on the more promising ones.
+- **Variants**: transfer (pic, flip, apic, tpic) × basis (linear, quadratic, cubic) × precision (f32, f64) with the spline gradient, and flip, apic and tpic × quadratic and cubic × precision with moving least squares (`mls`), over cell
+  sizes and particles per cell, all with the automatic step (`cfl` 0.4, with linear splines 0.25). The finest cells are spent on the more promising ones.
 - **Time** is processor time of the steps (`cpu_seconds` of `run.json`), with one thread. It leaves out what other programs took of the
   processor, but not that they slow its memory and its neighbouring core down: up to a third more or less between two points means little. Short runs are timed up to three times, the smallest counts. Particle-steps are exact.
-- **Pictures**: colour is the transfer, marker the basis, dashes the precision. A curve goes over cell sizes with 4 particles a cell; small hollow marks have 1, 9 or 16. Rings mark the Pareto front: what no
+- **Pictures**: colour is the transfer, marker the basis, dashes the precision, a white marker the gradient `mls`. A curve goes over cell sizes with 4 particles a cell; small hollow marks have 1, 9 or 16. Rings mark the Pareto front: what no
   other point beats in time and error (errors closer than 1 % count as the same). The star is the configuration of Du & He 2025: their cell size, step and scheme where they computed the scene, run by this program on the same machine.
 - **The paper's configuration is dominated** where a point of ours has no larger error in less than a third of its time. For the manufactured solution, particle-steps stand for time here and in the Pareto front.
 - **Reference runs** are of this program, APIC with quadratic splines in finer cells and with the automatic step: points that resemble them share some of their error and look better by it.
@@ -30,7 +30,8 @@ A scene is a file of some forty lines in `scripts/python/chart_scenes/`.
 
 def configuration(point):
     step = "" if point["step"] == "auto" else f", step {point['step']:g} s"
-    return f"{point['transfer']}, {point['basis']}, {point['precision']}, cell {1000 * point['cell']:.4g} mm, {point['per_cell']} a cell{step}"
+    gradient = "" if point["gradient"] == "spline" else f", {point['gradient']}"
+    return f"{point['transfer']}, {point['basis']}, {point['precision']}{gradient}, cell {1000 * point['cell']:.4g} mm, {point['per_cell']} a cell{step}"
 
 
 def error_text(value, measure):

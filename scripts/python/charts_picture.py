@@ -6,6 +6,7 @@ from support import plt
 COLOURS = dict(zip(TRANSFERS, ("#999999", "#d55e00", "#0072b2", "#009e73")))
 MARKERS = dict(zip(BASES, "^os"))
 DASHES = dict(zip(PRECISIONS, ((0, (4, 2)), "-")))
+FACES = {"spline": {}, "mls": {"mfc": "w", "ms": 5.5, "mew": 1.2}}
 COSTS = {"cpu_seconds": "processor seconds, one thread", "particle_steps": "particle-steps"}
 COST_NAMES = {"cpu_seconds": "seconds", "particle_steps": "particle-steps"}
 PICTURE_BYTES = 150_000
@@ -25,9 +26,9 @@ def draw(scene, kept, path):
 
 def panel(at, kept, measure, cost):
     for curve in EVERY:
-        own = [p for p in kept.points if (p["transfer"], p["basis"], p["precision"]) == curve]
+        own = [p for p in kept.points if (p["transfer"], p["basis"], p["precision"], p["gradient"]) == curve]
         line = sorted((p for p in own if p["per_cell"] == 4), key=lambda p: -p["cell"])
-        style = {"color": COLOURS[curve[0]], "marker": MARKERS[curve[1]], "ms": 4, "lw": 0.9}
+        style = {"color": COLOURS[curve[0]], "marker": MARKERS[curve[1]], "ms": 4, "lw": 0.9, **FACES[curve[3]]}
         at.plot([p[cost] for p in line], [p["errors"][measure] for p in line], ls=DASHES[curve[2]], **style)
         others = [p for p in own if p["per_cell"] != 4]
         at.plot([p[cost] for p in others], [p["errors"][measure] for p in others], **{**style, "ls": "", "mfc": "none", "ms": 3, "mew": 0.6})
@@ -43,5 +44,5 @@ def legend(kept):
     return [*(entry(name, color=colour, ls="-", lw=2) for name, colour in COLOURS.items()),
             *(entry(name, marker=marker) for name, marker in MARKERS.items()),
             *(entry(name, ls=dash) for name, dash in DASHES.items()),
-            entry("4 particles a cell", marker="o", ms=4), entry("1, 9 or 16 a cell", marker="o", ms=3, mfc="none"),
+            entry("gradient mls", marker="o", **FACES["mls"]), entry("4 particles a cell", marker="o", ms=4), entry("1, 9 or 16 a cell", marker="o", ms=3, mfc="none"),
             entry(f"Pareto front (by {COST_NAMES[kept.cost]})", marker="o", ms=8, mfc="none"), entry("Du & He 2025", marker="*", color="gold", mec="k", ms=12)]

@@ -13,11 +13,18 @@ sys.path.insert(0, str(ROOT / "validation"))
 
 from support import depth_profile, np  # noqa: E402
 
-TRANSFERS, BASES, PRECISIONS = ("pic", "flip", "apic", "tpic"), ("linear", "quadratic", "cubic"), ("f32", "f64")
-EVERY = tuple(itertools.product(TRANSFERS, BASES, PRECISIONS))
+TRANSFERS, BASES, PRECISIONS, GRADIENTS = ("pic", "flip", "apic", "tpic"), ("linear", "quadratic", "cubic"), ("f32", "f64"), ("spline", "mls")
+
+
+def curves(transfers=TRANSFERS, bases=BASES, precisions=PRECISIONS, gradients=GRADIENTS[:1]):
+    """(transfer, basis, precision, gradient) of every combination."""
+    return tuple(itertools.product(transfers, bases, precisions, gradients))
+
+
+EVERY = curves() + curves(TRANSFERS[1:], BASES[1:], gradients=["mls"])
 # Those that fine cells are spent on, and the finest.
-CHOSEN = tuple((transfer, "quadratic", precision) for transfer in TRANSFERS[1:] for precision in PRECISIONS) + (("apic", "linear", "f32"), ("apic", "cubic", "f32"))
-FINEST = tuple((transfer, "quadratic", precision) for transfer in TRANSFERS[2:] for precision in PRECISIONS)
+CHOSEN = curves(TRANSFERS[1:], ["quadratic"]) + curves(["apic"], ["linear", "cubic"], ["f32"]) + curves(["flip", "apic"], ["quadratic"], ["f32"], ["mls"])
+FINEST = curves(TRANSFERS[2:], ["quadratic"]) + curves(["apic"], ["quadratic"], ["f32"], ["mls"])
 
 
 @dataclasses.dataclass(frozen=True)
@@ -26,6 +33,7 @@ class Variant:
     transfer: str
     basis: str
     precision: str
+    gradient: str
     cell: float
     per_cell: int = 4
     step: float | str = "auto"
@@ -33,7 +41,7 @@ class Variant:
     @property
     def name(self):
         fixed = "" if self.step == "auto" else f"_step{self.step:g}"
-        return f"{self.transfer}_{self.basis}_{self.precision}_{self.cell:g}_{self.per_cell}{fixed}"
+        return f"{self.transfer}_{self.basis}_{self.precision}_{self.gradient}_{self.cell:g}_{self.per_cell}{fixed}"
 
 
 @dataclasses.dataclass(frozen=True)
@@ -78,7 +86,7 @@ class Scene:
 
     def assignments(self, variant):
         """The deck's values by pointer that make it this variant."""
-        method = {"transfer": variant.transfer, "basis": variant.basis, "precision": variant.precision}
+        method = {"transfer": variant.transfer, "basis": variant.basis, "precision": variant.precision, "gradient": variant.gradient}
         if variant.transfer == "flip":
             method["flip_fraction"] = self.flip_fraction
         frames = self.frames or self.end
@@ -93,7 +101,7 @@ class Scene:
     def reduced(self):
         """The scene on a grid of seconds: APIC and FLIP at the two largest cell sizes, the paper's choices and the reference made as coarse."""
         cells = sorted({variant.cell for variant in self.variants()}, reverse=True)[:3]
-        block = Block(cells[:2], curves=tuple((transfer, "quadratic", precision) for transfer in ("apic", "flip") for precision in PRECISIONS))
+        block = Block(cells[:2], curves=curves(["apic", "flip"], ["quadratic"]))
         coarser = cells[1] / self.paper.cell
         paper = dataclasses.replace(self.paper, cell=cells[1], step=self.paper.step * coarser)
         reference = self.reference and dataclasses.replace(self.reference, cell=cells[2])

@@ -17,7 +17,7 @@ from charts_scene import scenes
 
 
 def point(seconds, error, **more):
-    return {"transfer": "apic", "basis": "quadratic", "precision": "f64", "cell": 1, "per_cell": 4, "cpu_seconds": seconds, "errors": {"e": error}, **more}
+    return {"transfer": "apic", "basis": "quadratic", "precision": "f64", "gradient": "spline", "cell": 1, "per_cell": 4, "cpu_seconds": seconds, "errors": {"e": error}, **more}
 
 
 def kept(points, paper=None):

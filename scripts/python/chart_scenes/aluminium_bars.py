@@ -1,11 +1,11 @@
 """The collapse of aluminium bars, against the measured deposit."""
-from charts_scene import CHOSEN, ROOT, Block, Measure, Scene, Variant, check_of, np
+from charts_scene import CHOSEN, ROOT, Block, Measure, Scene, Variant, check_of, curves, np
 from support import distance_to_line, front, reference
 
 WIDTH = 0.005  # m, columns of the depth profile, the same for all cell sizes
 bars = check_of("aluminium_bars")
 surface = reference("bui2008_aluminium_bars_surface.csv")
-FINEST = (("flip", "quadratic", "f32"), ("flip", "quadratic", "f64"), ("apic", "quadratic", "f32"))
+FINEST = curves(["flip"], ["quadratic"]) + curves(["apic"], ["quadratic"], ["f32"]) + curves(["flip"], ["quadratic"], ["f32"], ["mls"])
 MEASURED = np.c_[surface["x_m"], surface["y_m"]]
 
 
@@ -39,7 +39,7 @@ SCENE = Scene(
     end=0.65,
     blocks=(Block((0.01, 0.005)), Block((0.01,), (1, 9, 16)), Block((0.004, 0.0025), curves=CHOSEN), Block((0.002,), curves=FINEST)),
     measures={"surface": Measure("surface", "mm", deposit), "run_out": Measure("run-out", "%", run_out)},
-    paper=Variant("flip", "quadratic", "f64", 0.002, step=1e-5),
+    paper=Variant("flip", "quadratic", "f64", "spline", 0.002, step=1e-5),
     paper_says="Du & He 2025, section 4.1.2: cell size, step and FLIP are stated there; 4 particles a cell and double precision are those of the deck.",
     advice=advice,
     flip_fraction=1,
