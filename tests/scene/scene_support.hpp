@@ -1,5 +1,7 @@
 #pragma once
 // Small decks, as structs, for the tests of the scene.
+#include <unistd.h>
+
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -52,11 +54,11 @@ inline std::string problem_pointer(const deck::Deck& deck, std::string* message 
   return "";
 }
 
-/// A file that is removed again.
+/// A file of this process alone (tests run side by side) that is removed again.
 class TemporaryFile {
  public:
   TemporaryFile(const std::string& name, const std::string& contents)
-      : path_((std::filesystem::temp_directory_path() / ("jaxmpm_test_scene_" + name)).string()) {
+      : path_((std::filesystem::temp_directory_path() / ("jaxmpm_test_scene_" + std::to_string(getpid()) + "_" + name)).string()) {
     std::ofstream(path_, std::ios::binary) << contents;
   }
   ~TemporaryFile() { std::filesystem::remove(path_); }
