@@ -67,7 +67,8 @@ void describe(Description<Wall>& d) {
 }
 
 void describe(Description<Obstacle>& d) {
-  d.is("obstacle", "A rigid solid at rest. Where it is thinner than 1.5 cells it holds the material on both its sides as slip does (docs/theory.md).");
+  d.is("obstacle",
+       "A rigid solid at rest. Where it is thinner than 1.5 cells it holds the material on both its sides as slip does (docs/theory.md).");
   d.required("name", &Obstacle::name).help("Unique among obstacles.");
   d.required("shape", &Obstacle::shape);
   d.optional("kind", &Obstacle::kind).help("As for walls; neither periodic nor open.");
