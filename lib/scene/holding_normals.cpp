@@ -93,6 +93,7 @@ class Corner {
     for (std::size_t k = 0; k < holding_.size(); ++k) look_along(holding_[k]);
     std::vector<Point> all;
     for (const Exit& exit : holding_) all.push_back(exit.normal);
+    pair_up(all);
     return all;
   }
 
@@ -130,6 +131,18 @@ class Corner {
   bool faces_away(const Exit& exit) const {
     return exit.depth <= thin &&
            std::any_of(holding_.begin(), holding_.end(), [&](const Exit& h) { return dot(h.normal, exit.normal) < -0.5; });
+  }
+  /// Puts opposite normals beside each other, in front: a pair takes all motion along it, whatever comes before or after, so that what is
+  /// held from all round (a thin post) is held alike from all sides.
+  static void pair_up(std::vector<Point>& normals) {
+    auto paired = normals.begin();
+    for (auto n = normals.begin(); n != normals.end(); ++n) {
+      const auto opposite = std::find_if(n + 1, normals.end(), [&](const Point& other) { return dot(*n, other) < -parallel; });
+      if (n < paired || opposite == normals.end()) continue;
+      std::rotate(paired, n, n + 1);
+      std::rotate(paired + 1, opposite, opposite + 1);
+      paired += 2, n = paired - 1;
+    }
   }
   void hold(const Exit& exit) { add(holding_, exit); }
   /// Of lines that meet the same surface the nearest counts.

@@ -149,3 +149,16 @@ TEST_CASE("round solids hold along their radius, however coarse the grid") {
     CHECK(found[0][1] == Approx((node[1] - 10) / r).margin(1e-9));
   }
 }
+
+TEST_CASE("what is held from all round stands still, whichever way it came") {
+  const Scene post(R"({ "sphere": { "center": [10, 10], "radius": 1.2 } })");
+  const std::vector<Point> normals = post.at(10, 10);
+  for (const Point& start : {Point{1, 0, 0}, Point{-1, 0, 0}, Point{0.3, -0.8, 0}}) {
+    Point v = start;
+    for (const Point& n : normals) {  // contact of kind separate
+      const double approach = v[0] * n[0] + v[1] * n[1];
+      for (std::size_t c = 0; c < 2 && approach < 0; ++c) v[c] -= approach * n[c];
+    }
+    CHECK(std::hypot(v[0], v[1]) < 1e-9);
+  }
+}
