@@ -34,7 +34,8 @@ void describe(Description<FrontGauge>& d) {
       .above(0)
       .otherwise("none: by quantile")
       .help(
-          "Farthest crossing of this depth of material, instead of a quantile: its volume over the length of the way and, in 3D, over the domain's breadth. Not along the vertical.");
+          "Farthest crossing of this depth of material, instead of a quantile: its volume over the length of the way and, "
+          "in 3D, over the domain's breadth. Not along the vertical.");
   d.optional("connected", &FrontGauge::connected).help("Only material joined to the largest cluster of cells.");
   d.optional("smooth", &FrontGauge::smooth)
       .unit("m")

@@ -25,6 +25,9 @@ struct Exit {
   int lines = 1;
 };
 
+/// Whether the domain ends at a wall there: at neither a periodic nor an open face.
+bool ends_at_wall(const Model& model, int axis, bool upper) { return !model.is_periodic(axis) && !model.is_open(axis, upper); }
+
 /// An obstacle with what lies behind the faces of the domain.
 class Solid {
  public:
@@ -36,8 +39,7 @@ class Solid {
       double& x = place[std::size_t(d)];
       const double N = model_.cells[std::size_t(d)];
       if (model_.is_periodic(d)) x -= N * std::floor(x / N);
-      else if ((x < 0 && !model_.is_open(d, false)) || (x > N && !model_.is_open(d, true)))
-        x = x < 0 ? -x : 2 * N - x, mirrored[std::size_t(d)] = true;
+      else if ((x < 0 || x > N) && ends_at_wall(model_, d, x > N)) x = x < 0 ? -x : 2 * N - x, mirrored[std::size_t(d)] = true;
     }
     SignedDistance s = obstacle_.signed_distance(place);
     for (std::size_t d = 0; d < 3; ++d)
@@ -170,7 +172,7 @@ std::vector<Point> within_faces(const std::vector<Point>& normals, const Point& 
   for (Point n : normals) {
     for (int d = 0; d < model.dim; ++d) {
       const bool low = node[std::size_t(d)] == 0, high = node[std::size_t(d)] == model.cells[std::size_t(d)];
-      if ((low || high) && !model.is_periodic(d) && !model.is_open(d, high)) n[std::size_t(d)] = 0;
+      if ((low || high) && ends_at_wall(model, d, high)) n[std::size_t(d)] = 0;
     }
     if (norm(n) < nothing) continue;
     n = 1 / norm(n) * n;
