@@ -19,10 +19,6 @@ function(jaxmpm_room name)
     endif()
     if(JAXMPM_SANITIZE AND name MATCHES "^(kernels|solvers|reference)$")  # the rooms that compute: unoptimised, their tests would take hours
       target_compile_options(${target} PRIVATE -O1)
-      # Three to six minutes each with checks of undefined behaviour, one without: the templates are those of other files, which have them.
-      set(slow ${sources})
-      list(FILTER slow INCLUDE REGEX "adjoint_(f32|f64_3d)_|schemes_f32_3d_")
-      set_source_files_properties(${slow} PROPERTIES COMPILE_OPTIONS -fno-sanitize=undefined)
     endif()
   else()
     add_library(${target} INTERFACE)

@@ -2,7 +2,6 @@
 // Portable SIMD: a pack of N lanes on the compiler's own vector type, so that g++ and nvcc (host side) both take it. Widths 2 to 16.
 // Packs behave as scalars (see tensor.hpp); comparisons give a Mask for select(). Rows and transposes serve the transfer kernels.
 #include <cmath>
-#include <cstring>
 #include <type_traits>
 #include <utility>
 
@@ -24,11 +23,12 @@ inline constexpr int native_lanes = native_bytes / int(sizeof(T));
 namespace pack_detail {
 // Written out, as compilers lose the attribute where its size depends on a template parameter.
 template <class T, int N>
-struct Register;
-#define JAXMPM_REGISTER(T, N)                                   \
-  template <>                                                   \
-  struct Register<T, N> {                                       \
-    typedef T type __attribute__((vector_size(N * sizeof(T)))); \
+struct Register;  // type: in a register; place: anywhere in memory among values of T
+#define JAXMPM_REGISTER(T, N)                                                                       \
+  template <>                                                                                       \
+  struct Register<T, N> {                                                                           \
+    typedef T type __attribute__((vector_size(N * sizeof(T))));                                     \
+    typedef T place __attribute__((vector_size(N * sizeof(T)), aligned(alignof(T)), may_alias));    \
   };
 #define JAXMPM_REGISTERS(T) JAXMPM_REGISTER(T, 2) JAXMPM_REGISTER(T, 4) JAXMPM_REGISTER(T, 8) JAXMPM_REGISTER(T, 16)
 JAXMPM_REGISTERS(float)
@@ -59,6 +59,7 @@ struct Mask {
 template <class T, int N>
 struct Pack {
   using Native = typename pack_detail::Register<T, N>::type;
+  using Place = typename pack_detail::Register<T, N>::place;
   using Scalar = T;
   static constexpr int lanes = N;
   Native v;
@@ -68,12 +69,9 @@ struct Pack {
   JAXMPM_INLINE explicit Pack(Native n) : v(n) {}
   JAXMPM_INLINE T operator[](int lane) const { return v[lane]; }
 
-  static JAXMPM_INLINE Pack load(const T* p) {
-    Pack r;
-    std::memcpy(&r.v, p, sizeof r.v);
-    return r;
-  }
-  JAXMPM_INLINE void store(T* p) const { std::memcpy(p, &v, sizeof v); }
+  // One move each. Copies by memcpy are in pieces of 16 or 32 bytes, and a load of what was stored in smaller pieces waits for the memory.
+  static JAXMPM_INLINE Pack load(const T* p) { return Pack(Native(*reinterpret_cast<const Place*>(p))); }
+  JAXMPM_INLINE void store(T* p) const { *reinterpret_cast<Place*>(p) = v; }
 
   friend JAXMPM_INLINE Pack operator+(Pack a, Pack b) { return Pack(a.v + b.v); }
   friend JAXMPM_INLINE Pack operator-(Pack a, Pack b) { return Pack(a.v - b.v); }

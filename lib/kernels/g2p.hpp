@@ -152,16 +152,8 @@ JAXMPM_INLINE void update_particles(Particles<typename Sch::T, Sch::Dim>& p, std
     speed2 += v * v;
     const P dX = P(step.dt / step.cell_size) * pic;
     moved = max(moved, abs(dX));
-    alignas(64) T move[W];
-    dX.store(move);
-    double* X = p.position[std::size_t(c)].data() + s;
-    const double lower = domain.lower[std::size_t(c)], upper = domain.upper[std::size_t(c)];
-    int outside = 0;
-    for (int l = 0; l < count; ++l) {
-      X[l] += double(move[l]);
-      outside |= int(!(X[l] >= lower)) | int(!(X[l] <= upper));
-    }
-    if (outside) report.inside = false;
+    if (!move_places(p.position[std::size_t(c)].data() + s, count, dX, domain.lower[std::size_t(c)], domain.upper[std::size_t(c)]))
+      report.inside = false;
   }
   if constexpr (Sch::affine) {
     constexpr int from = Sch::affine_by_moments ? G::moments : G::slopes;

@@ -51,9 +51,7 @@ class LawKernel final : public MaterialKernel<T, Dim> {
     if (any(!((e > P(T(-1))) & (e < P(T(1e6))) & (fastest < P(T(1e18)))))) report.sound = false;
     report.fastest = std::max(report.fastest, double(largest(fastest)));
     if (!account) return;
-    const P work = lost * volume(p, s, count, e, law_.density);
-    double& sum = strain >= 0 ? report.plastic : report.viscous;
-    for (int l = 0; l < count; ++l) sum += double(work[l]);
+    (strain >= 0 ? report.plastic : report.viscous) += sum_of(lost * volume(p, s, count, e, law_.density), count);
   }
 
   void start(const double stress[6], double compression, double* h) const override {

@@ -69,20 +69,29 @@ JAXMPM_INLINE void scatter(StencilRows<Sch>& rows, const Stencil& t, int l, cons
       if constexpr (moments >= 0) moment[k] = w * repeat_quad<moments + k, N>(coefficients);
       if constexpr (slopes >= 0) slope[k] = w * repeat_quad<slopes + k, N>(coefficients);
     });
-    const auto along = [&](int k, int a) {
-      R r(T(0));
-      if constexpr (moments >= 0) r = R(t.d[k][a][l]) * moment[k];
-      if constexpr (slopes >= 0) r += R(t.g[k][a][l]) * slope[k];
-      return r;
+    // Sums grow by one product at a time, which is one instruction.
+    const auto add_along = [&](R& sum, int k, int a) {
+      if constexpr (moments >= 0) sum += R(t.d[k][a][l]) * moment[k];
+      if constexpr (slopes >= 0) sum += R(t.g[k][a][l]) * slope[k];
     };
     if constexpr (Sch::Dim == 2) {
-      for (int a = 0; a < S; ++a) rows.row[a][c] += R(t.w[0][a][l]) * line + along(0, a);
+      for (int a = 0; a < S; ++a) {
+        R& row = rows.row[a][c];
+        row += R(t.w[0][a][l]) * line;
+        add_along(row, 0, a);
+      }
     } else {
       R y[S];
-      for (int b = 0; b < S; ++b) y[b] = along(1, b);
+      for (int b = 0; b < S; ++b) y[b] = R(T(0)), add_along(y[b], 1, b);
       for (int a = 0; a < S; ++a) {
-        const R wx(t.w[0][a][l]), plane = wx * line + along(0, a);
-        for (int b = 0; b < S; ++b) rows.row[a * S + b][c] += R(t.w[1][b][l]) * plane + wx * y[b];
+        const R wx(t.w[0][a][l]);
+        R plane = wx * line;
+        add_along(plane, 0, a);
+        for (int b = 0; b < S; ++b) {
+          R& row = rows.row[a * S + b][c];
+          row += R(t.w[1][b][l]) * plane;
+          row += wx * y[b];
+        }
       }
     }
   });

@@ -1,6 +1,7 @@
 #pragma once
 // Stencils of W particles at once, laid out for the row loops: nodes of a row (along the last axis) are contiguous, four values each.
 #include <cmath>
+#include <cstring>
 
 #include "core/pack.hpp"
 #include "kernels/scheme.hpp"
@@ -36,6 +37,61 @@ JAXMPM_INLINE void store(T* p, Pack<T, batch<T>> value, int count) {
   alignas(64) T lane[W];
   value.store(lane);
   for (int l = 0; l < count; ++l) p[l] = lane[l];
+}
+
+/// The first `count` of a batch as they are, zero in the lanes behind.
+template <class T>
+JAXMPM_INLINE Pack<T, batch<T>> load_zeros_behind(const T* p, int count) {
+  constexpr int W = batch<T>;
+  if (count == W) return Pack<T, W>::load(p);
+  alignas(64) T lane[W] = {};
+  for (int l = 0; l < count; ++l) lane[l] = p[l];
+  return Pack<T, W>::load(lane);
+}
+
+// Places along an axis and the derivatives by them are in double precision whatever T is: W of them are one or two packs.
+template <int W>
+inline constexpr int place_lanes = native_lanes<double> < W ? native_lanes<double> : W;
+
+/// As load(): X[0] … X[W − 1].
+template <int W>
+JAXMPM_INLINE void load_places(const double* p, int count, double (&X)[W]) {
+  constexpr int N = place_lanes<W>;
+  if (count == W) {
+    for (int l = 0; l < W; l += N) Pack<double, N>::load(p + l).store(X + l);
+  } else {
+    for (int l = 0; l < W; ++l) X[l] = p[l < count ? l : count - 1];
+  }
+}
+/// p[l] += change[l] for the first `count`. Returns whether all of them are in [lower, upper] then, which what is no number is not.
+template <class T>
+JAXMPM_INLINE bool move_places(double* p, int count, Pack<T, batch<T>> change, double lower, double upper) {
+  constexpr int W = batch<T>, N = place_lanes<W>;
+  using X = Pack<double, N>;
+  alignas(64) T by[W];
+  alignas(64) double exact[W];
+  change.store(by);
+  for (int l = 0; l < W; ++l) exact[l] = double(by[l]);
+  if (count < W) {
+    bool inside = true;
+    for (int l = 0; l < count; ++l) p[l] += exact[l], inside = inside && p[l] >= lower && p[l] <= upper;
+    return inside;
+  }
+  Mask<double, N> outside{};
+  for (int l = 0; l < W; l += N) {
+    const X x = X::load(p + l) + X::load(exact + l);
+    x.store(p + l);
+    outside = outside | !(x >= X(lower)) | !(x <= X(upper));
+  }
+  return !any(outside);
+}
+
+/// Sum of the first `count` lanes.
+template <class T>
+JAXMPM_INLINE double sum_of(Pack<T, batch<T>> value, int count) {
+  double sum = 0;
+  for (int l = 0; l < count; ++l) sum += double(value[l]);
+  return sum;
 }
 
 /// Values of W particles, one row of `stride` values a particle: a transposed copy of `Count` packs.
@@ -89,10 +145,7 @@ struct Stencils {
     for (int axis = 0; axis < Dim; ++axis) {
       alignas(64) T offset[W];
       alignas(64) double X[W];
-      const double* x = p.position[std::size_t(axis)].data() + s;
-      if (count == W) std::memcpy(X, x, sizeof X);
-      else
-        for (int l = 0; l < W; ++l) X[l] = x[l < count ? l : count - 1];
+      load_places(p.position[std::size_t(axis)].data() + s, count, X);
       const int o = origin[std::size_t(axis)];
       for (int l = 0; l < W; ++l) {
         const double b = std::floor(X[l] - Bspline<S>::base_shift);

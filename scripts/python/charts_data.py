@@ -6,7 +6,7 @@ import statistics
 from charts_scene import BASES, GRADIENTS, PRECISIONS, ROOT, TRANSFERS
 
 KEPT = ROOT / "docs" / "charts"
-BASE = {"transfer": "apic", "basis": "quadratic", "precision": "f64", "gradient": "spline"}  # what single choices are compared with
+BASE = {"transfer": "apic", "basis": "quadratic", "precision": "f64", "gradient": "spline", "averaging": 0}  # what single choices are compared with
 DOMINANT = 1 / 3  # ours dominates the paper's configuration with no larger error in less than this part of its cost
 MARGIN = 0.99  # an error has to be smaller by this factor to count as smaller
 
@@ -48,7 +48,8 @@ class Kept:
 
     def choices(self, measures):
         """(key, value, count, time ratio, error ratios) of each choice beside BASE: medians over points that differ in nothing else."""
-        for key, values in (("transfer", TRANSFERS), ("basis", BASES), ("precision", PRECISIONS), ("gradient", GRADIENTS)):
+        averaging = sorted({point["averaging"] for point in self.points})
+        for key, values in (("transfer", TRANSFERS), ("basis", BASES), ("precision", PRECISIONS), ("gradient", GRADIENTS), ("averaging", averaging)):
             for value in values:
                 pairs = [] if value == BASE[key] else list(self._pairs(key, value))
                 if pairs:

@@ -11,10 +11,10 @@ Made by `scripts/charts` from the data kept in [charts/](charts/); not to be edi
 of particles cost, and what does it buy?
 
 - **Variants**: transfer (pic, flip, apic, tpic) × basis (linear, quadratic, cubic) × precision (f32, f64) with the spline gradient, and flip, apic and tpic × quadratic and cubic × precision with moving least squares (`mls`), over cell
-  sizes and particles per cell, all with the automatic step (`cfl` 0.4, with linear splines 0.25). The finest cells are spent on the more promising ones.
+  sizes and particles per cell, all with the automatic step (`cfl` 0.4, with linear splines 0.25). Where pressures are measured, flip, apic and tpic also with `volume_averaging`, the cure of their noise and of locking. The finest cells are spent on the more promising ones.
 - **Time** is processor time of the steps (`cpu_seconds` of `run.json`), with one thread. It leaves out what other programs took of the
   processor, but not that they slow its memory and its neighbouring core down: up to a third more or less between two points means little. Short runs are timed up to three times, the smallest counts. Particle-steps are exact.
-- **Pictures**: colour is the transfer, marker the basis, dashes the precision, a white marker the gradient `mls`. A curve goes over cell sizes with 4 particles a cell; small hollow marks have 1, 9 or 16. Rings mark the Pareto front: what no
+- **Pictures**: colour is the transfer, marker the basis, dashes the precision, a white marker the gradient `mls`, one with a black edge `method/volume_averaging`. A curve goes over cell sizes with 4 particles a cell; small hollow marks have 1, 9 or 16. Rings mark the Pareto front: what no
   other point beats in time and error (errors closer than 1 % count as the same). The star is the configuration of Du & He 2025: their cell size, step and scheme where they computed the scene, run by this program on the same machine.
 - **The paper's configuration is dominated** where a point of ours has no larger error in less than a third of its time. For the manufactured solution, particle-steps stand for time here and in the Pareto front.
 - **Reference runs** are of this program, APIC with quadratic splines in finer cells and with the automatic step: points that resemble them share some of their error and look better by it.
@@ -31,7 +31,8 @@ A scene is a file of some forty lines in `scripts/python/chart_scenes/`.
 def configuration(point):
     step = "" if point["step"] == "auto" else f", step {point['step']:g} s"
     gradient = "" if point["gradient"] == "spline" else f", {point['gradient']}"
-    return f"{point['transfer']}, {point['basis']}, {point['precision']}{gradient}, cell {1000 * point['cell']:.4g} mm, {point['per_cell']} a cell{step}"
+    averaging = f", averaging {point['averaging']:g}" if point["averaging"] else ""
+    return f"{point['transfer']}, {point['basis']}, {point['precision']}{gradient}{averaging}, cell {1000 * point['cell']:.4g} mm, {point['per_cell']} a cell{step}"
 
 
 def error_text(value, measure):
@@ -61,7 +62,7 @@ def rival_table(scene, kept):
 
 
 def choice_table(scene, kept):
-    rows = [(value, count, f"{time:.2f}", *(f"{error:.2f}" for error in errors)) for _, value, count, time, errors in kept.choices(scene.measures)]
+    rows = [(f"averaging {value:g}" if key == "averaging" else value, count, f"{time:.2f}", *(f"{error:.2f}" for error in errors)) for key, value, count, time, errors in kept.choices(scene.measures)]
     return table(("instead of apic, quadratic, f64", "pairs", "time ×", *(f"{m.label} ×" for m in scene.measures.values())), rows)
 
 

@@ -9,19 +9,22 @@ import typing
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 FOLDER = pathlib.Path(__file__).resolve().parent / "chart_scenes"
-sys.path.insert(0, str(ROOT / "validation"))
+sys.path[:0] = [str(ROOT / "validation"), str(ROOT / "validation" / "pressure")]
 
+from roughness import roughness  # noqa: E402, F401
 from support import depth_profile, np  # noqa: E402
 
 TRANSFERS, BASES, PRECISIONS, GRADIENTS = ("pic", "flip", "apic", "tpic"), ("linear", "quadratic", "cubic"), ("f32", "f64"), ("spline", "mls")
+AVERAGING = 0.9  # /method/volume_averaging of the curves that have it
 
 
-def curves(transfers=TRANSFERS, bases=BASES, precisions=PRECISIONS, gradients=GRADIENTS[:1]):
-    """(transfer, basis, precision, gradient) of every combination."""
-    return tuple(itertools.product(transfers, bases, precisions, gradients))
+def curves(transfers=TRANSFERS, bases=BASES, precisions=PRECISIONS, gradients=GRADIENTS[:1], averaging=(0,)):
+    """(transfer, basis, precision, gradient, volume averaging) of every combination."""
+    return tuple(itertools.product(transfers, bases, precisions, gradients, averaging))
 
 
 EVERY = curves() + curves(TRANSFERS[1:], BASES[1:], gradients=["mls"])
+AVERAGED = curves(TRANSFERS[1:], BASES[1:2], averaging=[AVERAGING])
 # Those that fine cells are spent on, and the finest.
 CHOSEN = curves(TRANSFERS[1:], ["quadratic"]) + curves(["apic"], ["linear", "cubic"], ["f32"]) + curves(["flip", "apic"], ["quadratic"], ["f32"], ["mls"])
 FINEST = curves(TRANSFERS[2:], ["quadratic"]) + curves(["apic"], ["quadratic"], ["f32"], ["mls"])
@@ -34,6 +37,7 @@ class Variant:
     basis: str
     precision: str
     gradient: str
+    averaging: float
     cell: float
     per_cell: int = 4
     step: float | str = "auto"
@@ -41,7 +45,8 @@ class Variant:
     @property
     def name(self):
         fixed = "" if self.step == "auto" else f"_step{self.step:g}"
-        return f"{self.transfer}_{self.basis}_{self.precision}_{self.gradient}_{self.cell:g}_{self.per_cell}{fixed}"
+        averaged = f"_averaged{self.averaging:g}" if self.averaging else ""
+        return f"{self.transfer}_{self.basis}_{self.precision}_{self.gradient}_{self.cell:g}_{self.per_cell}{averaged}{fixed}"
 
 
 @dataclasses.dataclass(frozen=True)
@@ -77,6 +82,7 @@ class Scene:
     reference: Variant | None = None  # a run that others are compared with
     frames: float | None = None       # s between frames; only the last one otherwise
     gauges: float | None = None       # s between values of gauges; as frames otherwise
+    fields: tuple = ("velocity",)     # of the frames, beside positions
     flip_fraction: float = 0.99
     cost: str = "cpu_seconds"  # what front and rival go by: that, or "particle_steps" where something else than the method takes the time
     settings: dict = dataclasses.field(default_factory=dict)  # further assignments by pointer
@@ -86,14 +92,15 @@ class Scene:
 
     def assignments(self, variant):
         """The deck's values by pointer that make it this variant."""
-        method = {"transfer": variant.transfer, "basis": variant.basis, "precision": variant.precision, "gradient": variant.gradient}
+        method = {"transfer": variant.transfer, "basis": variant.basis, "precision": variant.precision, "gradient": variant.gradient,
+                  "volume_averaging": variant.averaging}
         if variant.transfer == "flip":
             method["flip_fraction"] = self.flip_fraction
         frames = self.frames or self.end
         whole = {
             "/domain/cell_size": variant.cell, "/bodies/0/particles_per_cell": variant.per_cell, "/method": method,
             "/time": {"end": self.end, "step": variant.step},
-            "/output": {"interval": frames, "gauge_interval": self.gauges or frames, "formats": ["hdf5"], "fields": ["velocity"]},
+            "/output": {"interval": frames, **({"gauge_interval": self.gauges} if self.gauges else {}), "formats": ["hdf5"], "fields": list(self.fields)},
             **self.settings,
         }
         return {pointer: json.dumps(value) for pointer, value in whole.items()}

@@ -27,8 +27,9 @@ JAXMPM_INLINE void update_particles_adjoint(const Particles<typename Sch::T, Sch
 
   for (int c = 0; c < Dim; ++c) {  // x ← x + Δt v, and the velocity
     alignas(64) T place[W];
-    const double* by_x = bar.position[std::size_t(c)].data() + s;
-    for (int l = 0; l < W; ++l) place[l] = T(by_x[l < count ? l : count - 1]);
+    alignas(64) double by_x[W];
+    load_places(bar.position[std::size_t(c)].data() + s, count, by_x);
+    for (int l = 0; l < W; ++l) place[l] = T(by_x[l]);
     T* by_v = bar.velocity[std::size_t(c)].data() + s;
     const P end = load(by_v, count);
     by(G::value, c) = P(step.dt / step.cell_size) * P::load(place);
@@ -37,7 +38,7 @@ JAXMPM_INLINE void update_particles_adjoint(const Particles<typename Sch::T, Sch
       by(G::value, c) += (P(T(1)) - blend) * end;
       by(G::change, c) = blend * end;
       const P share = end * (load(p.velocity[std::size_t(c)].data() + s, count) + component(G::change, c) - pic);
-      for (int l = 0; l < count; ++l) report.flip_fraction += double(share[l]);
+      report.flip_fraction += sum_of(share, count);
       store(by_v, blend * end, count);
     } else {
       by(G::value, c) += end;

@@ -34,15 +34,12 @@ class LawAdjoint final : public MaterialAdjoint<T, Dim> {
   static void add(Law<Real>& law, int count, MaterialReport& report) {
     const auto all = Law<Real>::constants(law);
     for (std::size_t k = 0; k < all.size(); ++k) {
-      const P by = Real::tape().derivative(all[k]->node);
-      for (int l = 0; l < count; ++l) report.constants[k] += double(by[l]);
+      report.constants[k] += sum_of(P(Real::tape().derivative(all[k]->node)), count);
     }
   }
   /// Derivatives by `count` particles, zero in the lanes behind them.
   static P seed(const Array<T>& field, std::size_t s, int count) {
-    alignas(64) T lane[W] = {};
-    for (int l = 0; l < count; ++l) lane[l] = field[s + std::size_t(l)];
-    return P::load(lane);
+    return load_zeros_behind(field.data() + s, count);
   }
 
  public:
@@ -87,9 +84,7 @@ class LawAdjoint final : public MaterialAdjoint<T, Dim> {
     Law<Real> law = taped_law();
     const Symmetric<Real, Dim> sigma = law.template stress<Real, Dim>(start.e, start.h);
     for (int k = 0; k < sigma.size; ++k) {
-      alignas(64) T lane[W];
-      for (int l = 0; l < W; ++l) lane[l] = l < count ? by_sigma[k][l] : T(0);
-      tape.seed(sigma[k].node, P::load(lane));
+      tape.seed(sigma[k].node, load_zeros_behind(by_sigma[k], count));
     }
     tape.sweep();
     const auto add_to = [&](Array<T>& field, int node) {
@@ -124,7 +119,7 @@ class LawAdjoint final : public MaterialAdjoint<T, Dim> {
       jaxmpm::store(bar.compression.data() + s, by_e, count);
       for (int k = 0; k < history; ++k) jaxmpm::store(bar.history[std::size_t(k)].data() + s, by_h[k], count);
       for (int k = 0; k < constants; ++k)
-        for (int l = 0; l < count; ++l) report.constants[std::size_t(k)] += double(by_constants[k][l]);
+        report.constants[std::size_t(k)] += sum_of(by_constants[k], count);
     }
   };
   void update_by_hand(const Particles<T, Dim>& p, std::size_t s, int count, const T H[][W], T dt, Particles<T, Dim>& bar, T by_H[][W],

@@ -1,5 +1,7 @@
 #pragma once
 // Adjoint of the transfer from particles to grid: the reverse of a scatter is a gather, of the nodes' derivatives this time.
+#include <limits>
+
 #include "kernels/adjoint/contract.hpp"
 #include "kernels/adjoint/material_adjoint.hpp"
 
@@ -23,10 +25,9 @@ struct PlaceSums {
     Pack<T, batch<T>> packs[decltype(rows)::stride];
     rows.read(packs);
     for (int j = 0; j < Sch::Dim; ++j) {
-      alignas(64) T sum[batch<T>];
-      ((packs[4 * j] + packs[4 * j + 1]) + (packs[4 * j + 2] + packs[4 * j + 3])).store(sum);
-      double* by_x = bar.position[std::size_t(j)].data() + s;
-      for (int l = 0; l < count; ++l) by_x[l] += double(sum[l]);
+      constexpr double far = std::numeric_limits<double>::infinity();
+      const auto sum = (packs[4 * j] + packs[4 * j + 1]) + (packs[4 * j + 2] + packs[4 * j + 3]);
+      move_places(bar.position[std::size_t(j)].data() + s, count, sum, -far, far);
     }
   }
 };
@@ -96,7 +97,7 @@ JAXMPM_INLINE void coefficients_adjoint(const Particles<typename Sch::T, Sch::Di
   add(bar.mass, by_mass);
   const P by_volume = by_impulse * impulse;
   add(bar.compression, -by_volume * growth);
-  for (int l = 0; l < count; ++l) report.constants[0] -= double(by_volume[l]) / double(material.reference_density());
+  report.constants[0] -= sum_of(by_volume, count) / double(material.reference_density());
   for (int k = 0; k < Symmetric<T, Dim>::size; ++k) by_stress[k].store(by_sigma[k]);
   material_adjoint.stress(p, s, count, by_sigma, bar, report);
 }

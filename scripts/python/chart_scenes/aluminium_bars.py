@@ -39,7 +39,7 @@ SCENE = Scene(
     end=0.65,
     blocks=(Block((0.01, 0.005)), Block((0.01,), (1, 9, 16)), Block((0.004, 0.0025), curves=CHOSEN), Block((0.002,), curves=FINEST)),
     measures={"surface": Measure("surface", "mm", deposit), "run_out": Measure("run-out", "%", run_out)},
-    paper=Variant("flip", "quadratic", "f64", "spline", 0.002, step=1e-5),
+    paper=Variant("flip", "quadratic", "f64", "spline", 0, 0.002, step=1e-5),
     paper_says="Du & He 2025, section 4.1.2: cell size, step and FLIP are stated there; 4 particles a cell and double precision are those of the deck.",
     advice=advice,
     flip_fraction=1,

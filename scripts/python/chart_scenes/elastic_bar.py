@@ -37,7 +37,7 @@ SCENE = Scene(
     gauges=0.001,
     blocks=(Block((0.025, 0.1 / 6, 0.0125)), Block((0.025,), (1, 9, 16)), Block((0.1 / 12,), curves=CHOSEN)),
     measures={"displacement": Measure("displacement", "%", displacement), "frequency": Measure("frequency", "%", frequency)},
-    paper=Variant("apic", "quadratic", "f64", "spline", 0.0125, step=1e-4),
+    paper=Variant("apic", "quadratic", "f64", "spline", 0, 0.0125, step=1e-4),
     paper_says="Du & He 2025 do not have this scene: their scheme, basis and particles per cell, and a fixed step of a tenth of what a wave takes to cross a cell, as in their aluminium bars.",
     advice=advice,
     settings={"/bodies/0/velocity": [f"{SPEED} * sin(1.5707963267948966 * x)", 0], "/gauges": {"momentum": {"kind": "momentum"}}},

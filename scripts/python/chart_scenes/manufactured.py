@@ -34,7 +34,7 @@ SCENE = Scene(
     end=manufactured.END,
     blocks=(Block((1 / 8, 1 / 16, 1 / 32)), Block((1 / 16,), (1, 9, 16)), Block((1 / 64,), curves=CHOSEN), Block((1 / 128,), curves=FINEST)),
     measures={"displacement": Measure("displacement", "%", displacement), "stress": Measure("stress", "%", stress)},
-    paper=Variant("apic", "quadratic", "f64", "spline", 1 / 32, step=8.5e-5),
+    paper=Variant("apic", "quadratic", "f64", "spline", 0, 1 / 32, step=8.5e-5),
     paper_says="Du & He 2025 do not have this scene: their scheme, basis and particles per cell, and a fixed step of a tenth of what a wave takes to cross a cell, as in their aluminium bars.",
     advice=advice,
     flip_fraction=1,
