@@ -57,7 +57,7 @@ nlohmann::ordered_json bench_gradient(const Model& model, Backend backend, const
   double end = 0;
   for (const double step : dt) end += step;
   FinalPositions observer(end);
-  const StepSequence steps{dt, {dt.size()}, blocks};
+  const StepSequence steps{dt, {dt.size()}, blocks, {}};
   SnapshotStack snapshots(make_state_memory(backend), deck.output.directory);
   const Room room = room_of(deck.inverse.empty() ? deck::Inverse{} : deck::inverse_of(deck));
   const MemoryPlan plan = plan_gradient(model, steps, room, snapshots);

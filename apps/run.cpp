@@ -153,7 +153,10 @@ class Run {
     spdlog::info("{} at {:.9g} s after {} steps, {} in steps ({:.3g} particle-steps/s), {} frames.", outcome.finished ? "Done" : "Stopped",
                  outcome.at.time, outcome.at.step, duration(outcome.seconds), seconds > 0 ? rate / seconds : 0, recorder_.frame_count());
     if (model_.has_open_face()) spdlog::info("{} of {} particles have left through open faces.", left(), first_count_);
-    if (outcome.finished) return static_cast<int>(ExitCode::done);
+    if (outcome.finished) {
+      if (const std::string note = moving_note(model_, *solver_, outcome.at.time); !note.empty()) spdlog::info("Note: {}", note);
+      return static_cast<int>(ExitCode::done);
+    }
     spdlog::info("Continue with: jaxmpm run {} --resume auto (and the same -o and --set)", options_.deck);
     return static_cast<int>(ExitCode::stopped);
   }

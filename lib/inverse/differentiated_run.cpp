@@ -210,6 +210,7 @@ StepSequence record_run(const Model& model, Backend backend, Observer& observer,
     steps.dt.push_back(now.dt);
     steps.most_blocks = std::max(steps.most_blocks, solver.active_blocks());
   }
+  if (!steps.dt.empty()) steps.note = moving_note(model, solver, now.time);
   return steps;
 }
 

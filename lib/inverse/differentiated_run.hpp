@@ -13,6 +13,7 @@ struct StepSequence {
   std::vector<double> dt;          // s
   std::vector<std::size_t> looks;  // [time of the observer] number of steps done
   std::size_t most_blocks = 0;     // active in one step: kept states have room for what they sum
+  std::string note;                // moving_note() of the end
 };
 
 /// What a gradient may take up, bytes.

@@ -77,6 +77,7 @@ void RunObjective::renew_steps(const Values& values) {
   if (before == 0 && model.time.step)  // an automatic step is never too long
     if (const std::string warning = large_step_warning(model, *make_solver(model, backend_)); !warning.empty()) spdlog::warn(warning);
   steps_ = record_run(model, backend_, *observer_, stop_);
+  if (before == 0 && !steps_.note.empty()) spdlog::info("Note: with the first values, {}", steps_.note);
   if (before > 0 && steps_.dt.size() != before) spdlog::info("Time steps renewed: {}, before {}.", steps_.dt.size(), before);
 }
 

@@ -1,7 +1,6 @@
 #include "solvers/solver.hpp"
 
-#include <iomanip>
-#include <sstream>
+#include <spdlog/fmt/fmt.h>
 
 #include "core/error.hpp"
 #include "solvers/explicit_step.hpp"
@@ -76,10 +75,33 @@ double step_limit(const Model& model, const Solver& solver) { return solver.stab
 std::string large_step_warning(const Model& model, const Solver& solver) {
   const double limit = step_limit(model, solver);
   if (!model.time.step || *model.time.step <= limit) return {};
-  std::ostringstream text;
-  text << std::setprecision(3) << "/time/step is " << *model.time.step << " s, but the first state allows about " << limit
-       << " s: expect the run to become unstable.";
-  return text.str();
+  return fmt::format("/time/step is {:.3g} s, but the first state allows about {:.3g} s: expect the run to become unstable.",
+                     *model.time.step, limit);
+}
+
+std::string moving_note(const Model& model, const Solver& solver, double time) {
+  constexpr double further = 0.5, least = 0.01;  // part of the time, and of the mass
+  const double speed = model.cell_size / (further * time);
+  std::string note;
+  std::vector<BodySnapshot> bodies;
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    if (!std::holds_alternative<deck::DruckerPrager>(model.bodies[b].material)) continue;
+    if (bodies.empty()) bodies = solver.snapshot({true}, false);
+    const BodySnapshot& body = bodies[b];
+    double moving = 0, all = 0;
+    for (std::size_t p = 0; p < body.mass.size(); ++p) {
+      const double* v = body.velocity.data() + p * std::size_t(model.dim);
+      const double speed2 = v[0] * v[0] + v[1] * v[1] + (model.dim == 3 ? v[2] * v[2] : 0.0);
+      all += body.mass[p], moving += speed2 > speed * speed ? body.mass[p] : 0.0;
+    }
+    if (!(moving > least * all)) continue;
+    if (!note.empty()) note += '\n';
+    note += fmt::format(
+        "{:.0f} % of the mass of body \"{}\" is still faster than {:.2g} m/s, a cell in half the run: its deposit is not final. "
+        "Give a later /time/end where that matters.",
+        100 * moving / all, model.bodies[b].name, speed);
+  }
+  return note;
 }
 
 std::unique_ptr<ReversibleSolver> make_reversible_solver(const Model& model, Backend backend) {

@@ -95,5 +95,8 @@ bool has_backend(Backend backend);
 double step_limit(const Model& model, const Solver& solver);
 /// What to say where a fixed step is beyond it; empty where none is.
 std::string large_step_warning(const Model& model, const Solver& solver);
+/// What to say of granular bodies that still move at the end of a run, at `time` s, whose deposits are not final: those of which over a
+/// hundredth of the mass would pass a cell in half of that time again. Empty where there are none.
+std::string moving_note(const Model& model, const Solver& solver, double time);
 
 }  // namespace jaxmpm

@@ -175,6 +175,15 @@ class ExitCodes(ProgramTest):
         deck["gauges"] = {}
         self.assertIn("counts a gap of 0.2 m", self.expect(DONE, "check", self.write(deck)))
 
+    def test_a_deposit_that_still_moves_is_noted(self):
+        sand = {"sand": {"model": "drucker_prager", "density": 1800, "youngs_modulus": 1e6, "poisson_ratio": 0.3, "friction_angle": 30, "cohesion": 0}}
+        deck = small_deck(time={"end": 0.2}, materials=sand, gauges={}, obstacles=[], walls={"y_min": {"kind": "friction", "coefficient": 0.5}})
+        deck["bodies"] = [{"name": "heap", "material": "sand", "shape": {"box": {"min": [0, 0], "max": [0.2, 0.3]}}}]
+        said = self.run_deck(self.write(deck), "falls")
+        self.assertRegex(said, r'\d+ % of the mass of body "heap" is still faster than')
+        deck["bodies"][0]["shape"]["box"]["max"] = [1.0, 0.1]  # from wall to wall: has nowhere to go
+        self.assertNotIn("still faster", self.run_deck(self.write(deck), "rests"))
+
     def test_unstable_run_is_3_and_leaves_no_nan(self):
         deck = self.write(small_deck(time={"end": 1.0, "step": 0.02}, output={"interval": 0.02}))
         said = self.run_deck(deck, "out", code=NUMERICS)
