@@ -24,11 +24,11 @@ namespace pack_detail {
 // Written out, as compilers lose the attribute where its size depends on a template parameter.
 template <class T, int N>
 struct Register;  // type: in a register; place: anywhere in memory among values of T
-#define JAXMPM_REGISTER(T, N)                                                                       \
-  template <>                                                                                       \
-  struct Register<T, N> {                                                                           \
-    typedef T type __attribute__((vector_size(N * sizeof(T))));                                     \
-    typedef T place __attribute__((vector_size(N * sizeof(T)), aligned(alignof(T)), may_alias));    \
+#define JAXMPM_REGISTER(T, N)                                                                    \
+  template <>                                                                                    \
+  struct Register<T, N> {                                                                        \
+    typedef T type __attribute__((vector_size(N * sizeof(T))));                                  \
+    typedef T place __attribute__((vector_size(N * sizeof(T)), aligned(alignof(T)), may_alias)); \
   };
 #define JAXMPM_REGISTERS(T) JAXMPM_REGISTER(T, 2) JAXMPM_REGISTER(T, 4) JAXMPM_REGISTER(T, 8) JAXMPM_REGISTER(T, 16)
 JAXMPM_REGISTERS(float)

@@ -147,11 +147,10 @@ struct Stencils {
       alignas(64) double X[W];
       load_places(p.position[std::size_t(axis)].data() + s, count, X);
       const int o = origin[std::size_t(axis)];
-      for (int l = 0; l < W; ++l) {
-        const double b = std::floor(X[l] - Bspline<S>::base_shift);
-        base[l] = base[l] * A + (int(b) - o);
-        offset[l] = T(X[l] - b);
-      }
+      alignas(64) double first[W];  // loops that do one thing become vector instructions
+      for (int l = 0; l < W; ++l) first[l] = std::floor(X[l] - Bspline<S>::base_shift);
+      for (int l = 0; l < W; ++l) base[l] = base[l] * A + (int(first[l]) - o);
+      for (int l = 0; l < W; ++l) offset[l] = T(X[l] - first[l]);
       const P f = P::load(offset);
       P weight[S], slope[S], curvature[S];
       Bspline<S>::weights(f, weight);

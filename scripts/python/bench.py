@@ -9,7 +9,7 @@ import bench_page
 import bench_parts
 from bench_runs import bench
 
-PARTS = ("yardstick", "particles", "threads", "configurations", "phases", "roofline", "domain", "runs", "gradient", "portable")
+PARTS = ("yardstick", "particles", "threads", "configurations", "phases", "roofline", "domain", "runs", "automatic_step", "gradient", "portable")
 
 
 def main():

@@ -1,14 +1,16 @@
 """What scripts/bench measures, part by part. Every function takes the settings and returns plain data; bench_page.py makes the page of it."""
 import json
 import os
-import pathlib
 import statistics
 import tempfile
 import time
 
+import numpy as np
+
 import bench_scenes as scenes
 from bench_runs import bench, compare, output_of, rate
 from bench_yardstick import measure as measure_yardstick
+from results import Results
 
 
 class Settings:
@@ -160,15 +162,44 @@ def runs(s):
         if s.quick:
             assignments = {**assignments, "/time/end": assignments["/time/end"] / 5}
         with tempfile.TemporaryDirectory() as out:
-            sets = [word for pointer, value in assignments.items() for word in ("--set", f"{pointer}={json.dumps(value)}")]
             began = time.monotonic()
-            output_of([s.program, "run", scenes.INPUTS / deck, "-q", "-o", f"{out}/run", "--threads", s.threads[-1], "--backend", "cpu", *sets], s.threads[-1])
+            summary = run_deck(s, deck, assignments, f"{out}/run", s.threads[-1]).run()
             wall = time.monotonic() - began
-            summary = json.loads(pathlib.Path(out, "run", "run.json").read_text())
         rows.append({"name": name, "deck": deck, "assignments": assignments, "wall_seconds": wall,
                      **{key: summary[key] for key in ("particles", "steps", "seconds", "frames", "threads", "seconds_by_phase", "seconds_by_output")}})
         progress(f"{name}: {wall:.0f} s")
     return {"rows": rows}
+
+
+def run_deck(s, deck, assignments, out, threads):
+    """The results of a whole run."""
+    sets = [word for pointer, value in assignments.items() for word in ("--set", f"{pointer}={json.dumps(value)}")]
+    output_of([s.program, "run", scenes.INPUTS / deck, "-q", "-o", out, "--threads", threads, "--backend", "cpu", *sets], threads)
+    return Results(out)
+
+
+def automatic_step(s):
+    """Steps and errors of the automatic and of the paper's fixed step, against a run with half the cell and a quarter of the automatic step."""
+    deck, end = "dam_break_2d.json", {"/time/end": 0.05 if s.quick else 0.1}
+    auto = {**end, "/time/step": "auto"}
+    with tempfile.TemporaryDirectory() as out:
+        fine = run_deck(s, deck, {**auto, "/time/cfl": 0.1, "/domain/cell_size": 0.002}, f"{out}/fine", 1)
+        rows = []
+        for name, assignments in (("fixed, 1e-5 s", end), ("automatic", auto)):
+            results = run_deck(s, deck, assignments, f"{out}/{name[:5]}", 1)
+            summary = results.run()
+            rows.append({"name": name, "steps": summary["steps"], "cpu_seconds": summary["cpu_seconds"], "front": gauge_distance(results, fine, "front"),
+                         "kinetic_energy": gauge_distance(results, fine, "energy", True)})
+            progress(f"{name} step: {summary['steps']} steps")
+    return {"rows": rows}
+
+
+def gauge_distance(results, other, name, relative=False):
+    """Root mean square difference of the first component of a gauge from another run's, over the latter's last value where `relative`."""
+    series = [(time, value.reshape(len(time), -1)[:, 0]) for time, value in (run.gauge(name) for run in (results, other))]
+    (time, own), (other_time, theirs) = series
+    distance = np.sqrt(np.mean((np.interp(other_time, time, own) - theirs) ** 2))
+    return float(distance / theirs[-1] if relative else distance)
 
 
 def gradient(s):

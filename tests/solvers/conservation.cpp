@@ -110,7 +110,8 @@ TEST_CASE("a scene with periodic faces runs the same wherever it begins") {
     worst = std::max(worst, std::abs(apart - width * std::round(apart / width)));
     CHECK((x >= 0 && x <= width));
   }
-  CHECK(worst < 1e-8 * width);  // the last bit of a position differs by the shift; colliding particles let that grow a millionfold in 400 steps
+  // The last bit of a position differs by the shift; particles that collide let that grow a millionfold in 400 steps.
+  CHECK(worst < 1e-8 * width);
 }
 
 TEST_CASE("a linear velocity field comes back exactly with APIC and TPIC") {

@@ -38,9 +38,7 @@ class LawAdjoint final : public MaterialAdjoint<T, Dim> {
     }
   }
   /// Derivatives by `count` particles, zero in the lanes behind them.
-  static P seed(const Array<T>& field, std::size_t s, int count) {
-    return load_zeros_behind(field.data() + s, count);
-  }
+  static P seed(const Array<T>& field, std::size_t s, int count) { return load_zeros_behind(field.data() + s, count); }
 
  public:
   explicit LawAdjoint(const Law<T>& law) : law_(law) {}
@@ -118,8 +116,7 @@ class LawAdjoint final : public MaterialAdjoint<T, Dim> {
     void store_to(Particles<T, Dim>& bar, std::size_t s, int count, MaterialReport& report) const {
       jaxmpm::store(bar.compression.data() + s, by_e, count);
       for (int k = 0; k < history; ++k) jaxmpm::store(bar.history[std::size_t(k)].data() + s, by_h[k], count);
-      for (int k = 0; k < constants; ++k)
-        report.constants[std::size_t(k)] += sum_of(by_constants[k], count);
+      for (int k = 0; k < constants; ++k) report.constants[std::size_t(k)] += sum_of(by_constants[k], count);
     }
   };
   void update_by_hand(const Particles<T, Dim>& p, std::size_t s, int count, const T H[][W], T dt, Particles<T, Dim>& bar, T by_H[][W],
