@@ -100,7 +100,8 @@ def page(data):
     g = data["gradient"]
     lines += ["", f"A gradient over 1000 steps of the 2D scene by the initial velocities, one thread: {g['peer']} {g['version']} (`jax.grad` through a scan, each step computed again on the way back) takes {g['seconds']:.1f} s, "
               f"jaxmpm {g['jaxmpm']:.2f} s: {g['times']:.0f} times as fast.", "",
-              "Warp runs a kernel on one thread of a CPU. Taichi's particles to grid runs on one thread too: with atomic additions two threads took four to five times as long. Both are at home on GPUs, which this page says nothing about."]
+              "Warp runs a kernel on one thread of a CPU. Taichi's particles to grid runs on one thread too: with atomic additions two threads took four to five times as long. Both are at home on GPUs, which this page says nothing about."
+              " Research codes beside ours are in [research-codes.md](research-codes.md)."]
     return "\n".join(lines) + "\n"
 
 
