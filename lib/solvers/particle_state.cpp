@@ -219,6 +219,9 @@ void check_particles(const Model& model, const Body& body, const MaterialKernel<
     std::ostringstream text;
     text << "particle " << p.id[a] << " of body \"" << body.name << "\" at (" << place.str() << ") "
          << (finite ? "has left the domain" : "has a state that is not finite");
+    if (model.method.basis == deck::Basis::linear)
+      text
+          << "; with linear splines what passes a plane of nodes is strained by nodes that have next to no mass, which \"quadratic\" avoids";
     throw NumericsError(text.str());
   }
 }

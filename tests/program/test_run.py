@@ -194,6 +194,12 @@ class ExitCodes(ProgramTest):
             self.assertTrue(np.all(np.isfinite(values)), name)
         self.assertTrue((self.scratch / "out" / "checkpoint.h5").exists())
 
+    def test_a_failure_with_linear_splines_names_what_they_do(self):
+        for basis in ("linear", "quadratic"):
+            deck = small_deck(time={"end": 1.0, "step": 0.02}, method={"transfer": "apic", "basis": basis})
+            said = self.run_deck(self.write(deck), basis, code=NUMERICS)
+            self.assertEqual("with linear splines" in said, basis == "linear")
+
     def test_results_are_not_overwritten_unasked(self):
         deck = self.write(small_deck())
         self.run_deck(deck, "out")
