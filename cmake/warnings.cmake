@@ -21,8 +21,7 @@ if(JAXMPM_SANITIZE)
   # Their instrumentation makes GCC see uninitialised values in the standard library where there are none.
   target_compile_options(jaxmpm_warnings INTERFACE -Wno-maybe-uninitialized)
   set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O0")  # instrumented templates take minutes to optimise; rooms that compute are optimised (rooms.cmake)
-  # -g1 gives places for the reports; following every variable, as -g after it would, makes the kernels compile three times as long. Checks of
-  # addresses by calls instead of inline halve what is left.
-  add_compile_options(-fsanitize=${JAXMPM_SANITIZE} -fno-omit-frame-pointer -g1 --param=asan-instrumentation-with-call-threshold=0)
+  # -g1 gives places for the reports; following every variable, as -g after it would, makes the kernels compile three times as long.
+  add_compile_options(-fsanitize=${JAXMPM_SANITIZE} -fno-omit-frame-pointer -g1)
   add_link_options(-fsanitize=${JAXMPM_SANITIZE})
 endif()
