@@ -17,7 +17,7 @@ from charts_scene import scenes
 
 
 def point(seconds, error, **more):
-    return {"transfer": "apic", "basis": "quadratic", "precision": "f64", "gradient": "spline", "cell": 1, "per_cell": 4, "cpu_seconds": seconds, "errors": {"e": error}, **more}
+    return {**charts_data.BASE, "cell": 1, "per_cell": 4, "cpu_seconds": seconds, "errors": {"e": error}, **more}
 
 
 def kept(points, paper=None):
@@ -53,6 +53,10 @@ class Data(unittest.TestCase):
     def test_a_choice_is_compared_with_points_that_differ_in_nothing_else(self):
         points = [point(2, 4), point(8, 1, cell=2), point(1, 8, precision="f32"), point(2, 1, precision="f32", cell=2), point(1, 1, precision="f32", cell=3)]
         self.assertEqual(list(kept(points).choices(["e"])), [("precision", "f32", 2, 0.375, [1.5])])
+
+    def test_parts_of_averaging_that_a_scene_has_are_choices(self):
+        points = [point(2, 4), point(3, 1, averaging=0.9), point(4, 2, averaging=1)]
+        self.assertEqual(list(kept(points).choices(["e"])), [("averaging", 0.9, 1, 1.5, [0.25]), ("averaging", 1, 1, 2, [0.5])])
 
     def test_what_is_written_is_read_again(self):
         with tempfile.TemporaryDirectory() as folder:
