@@ -16,6 +16,9 @@ from support import depth_profile, np  # noqa: E402
 
 TRANSFERS, BASES, PRECISIONS, GRADIENTS = ("pic", "flip", "apic", "tpic"), ("linear", "quadratic", "cubic"), ("f32", "f64"), ("spline", "mls")
 AVERAGING = 0.9  # /method/volume_averaging of the curves that have it
+# Of the paper's configuration, where the scene is none of the paper's.
+NOT_THEIR_SCENE = ("Du & He 2025 do not have this scene: their scheme, basis and particles per cell, and a fixed step of a tenth of what a wave takes to cross a cell, "
+                   "as in their aluminium bars.")
 
 
 def curves(transfers=TRANSFERS, bases=BASES, precisions=PRECISIONS, gradients=GRADIENTS[:1], averaging=(0,)):

@@ -1,7 +1,7 @@
 """A cantilever near incompressibility that sinks under its own weight, against Timoshenko's beam: locking, noise of the pressure, and their cure."""
 import statistics
 
-from charts_scene import BASES, CHOSEN, EVERY, ROOT, TRANSFERS, Block, Measure, Scene, Variant, check_of, curves, roughness
+from charts_scene import BASES, CHOSEN, EVERY, NOT_THEIR_SCENE, ROOT, TRANSFERS, Block, Measure, Scene, Variant, check_of, curves, roughness
 
 NU, WHOLE = 0.499, 1  # Poisson's ratio; volume averaging of all of the change
 pressure = check_of("pressure")
@@ -35,7 +35,7 @@ SCENE = Scene(
     blocks=(Block((0.25, 0.125), curves=EVERY + CURED), Block((0.25,), (1, 9), curves=CHOSEN + CURED), Block((1 / 12,), curves=curves(["apic"], ["quadratic"], averaging=[0, WHOLE]))),
     measures={"drop": Measure("drop of the tip", "%", drop), "noise": Measure("noise of the pressure", "% ρgh", noise)},
     paper=Variant("apic", "quadratic", "f64", "spline", 0, 0.125, step=5e-6),
-    paper_says="Du & He 2025 do not have this scene: their scheme, basis and particles per cell, and a fixed step of a tenth of what a wave takes to cross a cell, as in their aluminium bars.",
+    paper_says=NOT_THEIR_SCENE,
     advice=advice,
     settings={"/materials/rubber/poisson_ratio": NU, "/method/damping": 20},
 )

@@ -1,5 +1,5 @@
 """The vibrating elastic bar, against the closed form."""
-from charts_scene import CHOSEN, ROOT, Block, Measure, Scene, Variant, check_of, np
+from charts_scene import CHOSEN, NOT_THEIR_SCENE, ROOT, Block, Measure, Scene, Variant, check_of, np
 
 SPEED = 0.002  # m/s, a tenth of the deck's: the closed form is that of strains that are vanishingly small
 bar = check_of("elastic_bar")
@@ -38,7 +38,7 @@ SCENE = Scene(
     blocks=(Block((0.025, 0.1 / 6, 0.0125)), Block((0.025,), (1, 9, 16)), Block((0.1 / 12,), curves=CHOSEN)),
     measures={"displacement": Measure("displacement", "%", displacement), "frequency": Measure("frequency", "%", frequency)},
     paper=Variant("apic", "quadratic", "f64", "spline", 0, 0.0125, step=1e-4),
-    paper_says="Du & He 2025 do not have this scene: their scheme, basis and particles per cell, and a fixed step of a tenth of what a wave takes to cross a cell, as in their aluminium bars.",
+    paper_says=NOT_THEIR_SCENE,
     advice=advice,
     settings={"/bodies/0/velocity": [f"{SPEED} * sin(1.5707963267948966 * x)", 0], "/gauges": {"momentum": {"kind": "momentum"}}},
 )

@@ -1,7 +1,7 @@
 """A neo-Hookean block that follows a prescribed motion under the body force that it takes, against the closed form."""
 import json
 
-from charts_scene import CHOSEN, ROOT, Block, Measure, Scene, Variant, check_of, curves
+from charts_scene import CHOSEN, NOT_THEIR_SCENE, ROOT, Block, Measure, Scene, Variant, check_of, curves
 
 manufactured = check_of("manufactured")
 solution = manufactured.Solution(2)
@@ -35,7 +35,7 @@ SCENE = Scene(
     blocks=(Block((1 / 8, 1 / 16, 1 / 32)), Block((1 / 16,), (1, 9, 16)), Block((1 / 64,), curves=CHOSEN), Block((1 / 128,), curves=FINEST)),
     measures={"displacement": Measure("displacement", "%", displacement), "stress": Measure("stress", "%", stress)},
     paper=Variant("apic", "quadratic", "f64", "spline", 0, 1 / 32, step=8.5e-5),
-    paper_says="Du & He 2025 do not have this scene: their scheme, basis and particles per cell, and a fixed step of a tenth of what a wave takes to cross a cell, as in their aluminium bars.",
+    paper_says=NOT_THEIR_SCENE,
     advice=advice,
     flip_fraction=1,
     cost="particle_steps",
