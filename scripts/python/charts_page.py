@@ -67,8 +67,18 @@ def choice_table(scene, kept):
 
 
 def failures(kept):
-    lines = [f"- {configuration(f)}: {f['failed']}" for f in kept.failed]
-    return ["Runs that failed:", "", *lines, ""] if lines else []
+    """A table of the runs that failed: those that differ in transfer, precision or averaging alone share a row, with what the first of them said."""
+    if not kept.failed:
+        return []
+    alike = {}
+    for f in kept.failed:
+        alike.setdefault((f["basis"], f["gradient"], f["cell"], f["per_cell"]), []).append(f)
+    rows = []
+    for (basis, gradient, cell, per_cell), runs in alike.items():
+        each = (", ".join(dict.fromkeys(str(f[key]) for f in runs)) for key in ("transfer", "precision", "averaging"))
+        form = "" if gradient == "spline" else f", {gradient}"
+        rows.append((basis + form, f"{1000 * cell:.4g} mm", per_cell, *each, len(runs), runs[0]["failed"].removeprefix("jaxmpm: ")))
+    return ["Runs that failed:", "", *table(("basis", "cell", "a cell", "transfer", "precision", "averaging", "runs", "the first of them"), rows)]
 
 
 def commits(kept):
