@@ -33,7 +33,13 @@ CLI::Option* add_results_options(CLI::App& app, ResultsOptions& options, const s
   app.add_option("-o,--output", options.directory, "Results directory, instead of the deck's")->type_name("DIR");
   CLI::Option* replace = app.add_flag("--overwrite", options.overwrite, overwrite);
   CLI::Option* again = app.add_option("--resume", options.resume, resume)->excludes(replace);
-  app.add_option("--max-walltime", options.max_walltime, walltime)->check(CLI::PositiveNumber)->type_name("MIN");
+  const CLI::Validator above_zero(
+      [](const std::string& text) {
+        double minutes = 0;
+        return CLI::detail::lexical_cast(text, minutes) && minutes > 0 ? std::string() : "'" + text + "' is no number of minutes above 0";
+      },
+      "");
+  app.add_option("--max-walltime", options.max_walltime, walltime)->check(above_zero)->type_name("MIN");
   return again;
 }
 

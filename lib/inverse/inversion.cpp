@@ -7,6 +7,7 @@
 
 #include "core/error.hpp"
 #include "inverse/differentiated_run.hpp"
+#include "inverse/misfit.hpp"
 #include "inverse/optimizer.hpp"
 
 namespace jaxmpm {
@@ -177,6 +178,12 @@ void Inversion::tell_fit() const {
     spdlog::info("  observation {}: {} rows, read minus observed {:.3g} rms, {:.3g} on average, {:.3g} at most{}", o,
                  state_.comparisons[o].time.size(), misfit.rms, misfit.mean, misfit.largest,
                  misfit.unread > 0 ? fmt::format("; {} rows without material to read", misfit.unread) : "");
+    if (misfit.is_no_noise())
+      spdlog::warn(
+          "What observation {} and the run differ by is no noise: it goes on from row to row (correlation {:.2f}; noise stays below {:.2f}). "
+          "The model leaves something out, and the values may be off by more than standard errors say: see how far another transfer, half the "
+          "cell or other observations move them.",
+          o, misfit.correlation, misfit.largest_of_noise());
   }
 }
 

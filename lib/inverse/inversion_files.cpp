@@ -6,6 +6,7 @@
 
 #include "core/provenance.hpp"
 #include "inverse/evaluation_record.hpp"
+#include "inverse/misfit.hpp"
 #include "io/checkpoint.hpp"
 #include "io/files.hpp"
 #include "scene/frame.hpp"
@@ -68,8 +69,14 @@ Json comparisons_json(const std::vector<Comparison>& comparisons) {
   Json list = Json::array();
   for (const Comparison& one : comparisons) {
     const Misfit misfit = misfit_of(one);
-    list.push_back(
-        {{"rows", one.time.size()}, {"unread", misfit.unread}, {"rms", misfit.rms}, {"mean", misfit.mean}, {"largest", misfit.largest}});
+    const bool correlated = !std::isnan(misfit.correlation);
+    list.push_back({{"rows", one.time.size()},
+                    {"unread", misfit.unread},
+                    {"rms", misfit.rms},
+                    {"mean", misfit.mean},
+                    {"largest", misfit.largest},
+                    {"correlation", correlated ? Json(misfit.correlation) : Json(nullptr)},
+                    {"noise", misfit.can_tell() ? Json(!misfit.is_no_noise()) : Json(nullptr)}});
   }
   return list;
 }
@@ -174,22 +181,6 @@ void write_h5(const std::string& path, const InversionState& state, const Model&
 }
 
 }  // namespace
-
-Misfit misfit_of(const Comparison& comparison) {
-  Misfit misfit;
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < comparison.read.size(); ++i) {
-    const double difference = comparison.read[i] - comparison.observed[i];
-    if (std::isnan(difference)) {
-      misfit.unread += i % comparison.width == 0;
-      continue;
-    }
-    misfit.rms += difference * difference, misfit.mean += difference, ++count;
-    misfit.largest = std::max(misfit.largest, std::abs(difference));
-  }
-  if (count > 0) misfit.rms = std::sqrt(misfit.rms / static_cast<double>(count)), misfit.mean /= static_cast<double>(count);
-  return misfit;
-}
 
 bool InversionDirectory::holds_inversion() const { return std::filesystem::exists(json()) || std::filesystem::exists(h5()); }
 

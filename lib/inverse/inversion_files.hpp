@@ -19,13 +19,6 @@ struct InversionState {
   std::vector<Comparison> comparisons;       // of the data with the run of the best values, once the search has ended
 };
 
-/// Differences read − observed of one observation, over all its numbers that could be read.
-struct Misfit {
-  double rms = 0, mean = 0, largest = 0;  // in the unit of the data
-  std::size_t unread = 0;                 // rows
-};
-Misfit misfit_of(const Comparison& comparison);
-
 class InversionDirectory {
  public:
   explicit InversionDirectory(std::string path) : path_(std::move(path)) {}

@@ -1,5 +1,7 @@
 #include "inverse/observed_rows.hpp"
 
+#include <spdlog/spdlog.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -37,6 +39,10 @@ std::vector<ObservedRow> within_window(std::vector<ObservedRow> rows, const deck
         late->line > 0)  // the results of a longer run may go on
       place.bad_file(late->line, "the time " + number_text(late->time) + " s is after the run's end at " + number_text(place.end) +
                                      " s; make /time/end later, or leave such rows out by to_time");
+  const auto after_end = std::count_if(rows.begin(), rows.end(), [&](const ObservedRow& r) { return r.time > place.end + tolerance; });
+  if (after_end > 0 && !observed.to_time)
+    spdlog::info("{}: {} of {} rows of '{}' are of times after the run's end at {} s, and are left out.", place.pointer, after_end,
+                 rows.size(), place.file, number_text(place.end));
   std::vector<ObservedRow> kept;
   double start = 0, counted = -1;  // the first time kept, and the last multiple of `every` that has had its time
   for (ObservedRow& row : rows) {

@@ -108,12 +108,6 @@ JAXMPM_INLINE void gather_batch(const Stencil& t, int count, const typename Sch:
   for (int l = count; l < batch<T>; ++l) std::memcpy(gathered.row(l), gathered.row(count - 1), sizeof(T) * std::size_t(4 * G::padded));
 }
 
-/// What the gather knows of the domain, to catch particles that leave it: its faces along each axis, cells; none where they are periodic.
-template <int Dim>
-struct DomainBounds {
-  std::array<double, Dim> lower, upper;
-};
-
 /// tr H += part (θ̄ − θ): takes part of the last step's change of volume θ back and puts the mean of the nodes around in its place. Returns
 /// tr H as it was.
 template <class T, int Dim>
@@ -152,8 +146,7 @@ JAXMPM_INLINE void update_particles(Particles<typename Sch::T, Sch::Dim>& p, std
     speed2 += v * v;
     const P dX = P(step.dt / step.cell_size) * pic;
     moved = max(moved, abs(dX));
-    if (!move_places(p.position[std::size_t(c)].data() + s, count, dX, domain.lower[std::size_t(c)], domain.upper[std::size_t(c)]))
-      report.inside = false;
+    if (!move_places(p.position[std::size_t(c)].data() + s, count, dX, domain[std::size_t(c)])) report.inside = false;
   }
   if constexpr (Sch::affine) {
     constexpr int from = Sch::affine_by_moments ? G::moments : G::slopes;

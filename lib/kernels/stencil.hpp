@@ -1,9 +1,11 @@
 #pragma once
 // Stencils of W particles at once, laid out for the row loops: nodes of a row (along the last axis) are contiguous, four values each.
+#include <array>
 #include <cmath>
 #include <cstring>
 
 #include "core/pack.hpp"
+#include "core/scalar.hpp"
 #include "kernels/scheme.hpp"
 #include "state/particles.hpp"
 
@@ -63,27 +65,84 @@ JAXMPM_INLINE void load_places(const double* p, int count, double (&X)[W]) {
     for (int l = 0; l < W; ++l) X[l] = p[l < count ? l : count - 1];
   }
 }
-/// p[l] += change[l] for the first `count`. Returns whether all of them are in [lower, upper] then, which what is no number is not.
+/// The lanes of a pack in the precision of places.
 template <class T>
-JAXMPM_INLINE bool move_places(double* p, int count, Pack<T, batch<T>> change, double lower, double upper) {
+struct PlaceChange {
+  static constexpr int W = batch<T>;
+  alignas(64) double value[W];
+  explicit JAXMPM_INLINE PlaceChange(Pack<T, W> change) {
+    alignas(64) T lane[W];
+    change.store(lane);
+    for (int l = 0; l < W; ++l) value[l] = double(lane[l]);
+  }
+};
+
+/// Bounds of the places along an axis, cells. Past `lower` and `upper`, which are closed faces, nothing stays; no face holds what comes to
+/// lie past `lowest` and `highest` (held_within). Infinite where there are none.
+struct PlaceBounds {
+  double lower, upper, lowest, highest;
+};
+template <int Dim>
+using DomainBounds = std::array<PlaceBounds, std::size_t(Dim)>;
+
+/// p[l] += change[l] for the first `count`, as far as closed faces let them. Returns whether all of them are where faces hold them; those
+/// that are not, and what is no number, stay as they are.
+template <class T>
+JAXMPM_INLINE bool move_places(double* p, int count, Pack<T, batch<T>> change, const PlaceBounds& at) {
   constexpr int W = batch<T>, N = place_lanes<W>;
   using X = Pack<double, N>;
-  alignas(64) T by[W];
-  alignas(64) double exact[W];
-  change.store(by);
-  for (int l = 0; l < W; ++l) exact[l] = double(by[l]);
+  const PlaceChange<T> by(change);
   if (count < W) {
     bool inside = true;
-    for (int l = 0; l < count; ++l) p[l] += exact[l], inside = inside && p[l] >= lower && p[l] <= upper;
+    for (int l = 0; l < count; ++l) {
+      const double x = p[l] + by.value[l];
+      const bool held = x >= at.lowest && x <= at.highest;
+      p[l] = held ? min(max(x, at.lower), at.upper) : x;
+      inside = inside && held;
+    }
     return inside;
   }
   Mask<double, N> outside{};
   for (int l = 0; l < W; l += N) {
-    const X x = X::load(p + l) + X::load(exact + l);
-    x.store(p + l);
-    outside = outside | !(x >= X(lower)) | !(x <= X(upper));
+    const X x = X::load(p + l) + X::load(by.value + l);
+    const Mask<double, N> held = (x >= X(at.lowest)) & (x <= X(at.highest));
+    select(held, min(max(x, X(at.lower)), X(at.upper)), x).store(p + l);
+    outside = outside | !held;
   }
   return !any(outside);
+}
+
+/// Adjoint of what the faces do in move_places: derivatives `bar` by the first `count` places that p[l] + change[l] became are none where a
+/// face holds them.
+template <class T>
+JAXMPM_INLINE void drop_held(const double* p, int count, Pack<T, batch<T>> change, const PlaceBounds& at, double* bar) {
+  constexpr int W = batch<T>, N = place_lanes<W>;
+  using X = Pack<double, N>;
+  const PlaceChange<T> by(change);
+  if (count < W) {
+    for (int l = 0; l < count; ++l) {
+      const double x = p[l] + by.value[l];
+      if (x < at.lower || x > at.upper) bar[l] = 0;
+    }
+    return;
+  }
+  for (int l = 0; l < W; l += N) {
+    const X x = X::load(p + l) + X::load(by.value + l);
+    select((x < X(at.lower)) | (x > X(at.upper)), X(0.0), X::load(bar + l)).store(bar + l);
+  }
+}
+
+/// p[l] += change[l] for the first `count` derivatives by places.
+template <class T>
+JAXMPM_INLINE void add_to_places(double* p, int count, Pack<T, batch<T>> change) {
+  constexpr int W = batch<T>, N = place_lanes<W>;
+  using X = Pack<double, N>;
+  const PlaceChange<T> by(change);
+  if (count < W) {
+    for (int l = 0; l < count; ++l) p[l] += by.value[l];
+    return;
+  }
+  for (int l = 0; l < W; l += N) (X::load(p + l) + X::load(by.value + l)).store(p + l);
 }
 
 /// Sum of the first `count` lanes.

@@ -8,9 +8,6 @@
 
 namespace jaxmpm {
 
-template <int Dim>
-struct DomainBounds;
-
 template <class T, int Dim>
 struct StepKernels {
   double base_shift = 0;  // of Bspline, cells

@@ -123,6 +123,17 @@ void release(const Model& model, ReferenceBody<Scalar>& body, std::size_t p) {
   }
 }
 
+/// Closed faces hold a particle that comes to lie a little beyond them.
+template <class Scalar>
+void hold(const Model& model, Triple<Scalar>& X) {
+  for (int a = 0; a < model.dim; ++a) {
+    const double x = value_of(X[a]), last = model.cells[a];
+    if (model.is_periodic(a)) continue;
+    if (x < 0 && x >= -held_within && !model.is_open(a, false)) X[a] = Scalar(0);
+    if (x > last && x <= last + held_within && !model.is_open(a, true)) X[a] = Scalar(last);
+  }
+}
+
 template <class Scalar>
 void check_position(const Model& model, const Triple<Scalar>& X, std::size_t body, std::size_t particle) {
   for (int a = 0; a < model.dim; ++a) {
@@ -259,6 +270,7 @@ ReferenceReport<Scalar> reference_step(const Model& model, ReferenceState<Scalar
     for (std::size_t p = 0; p < body.mass.size(); ++p) {
       grid_to_particle(model, report.grid, dt, body, p);
       release(model, body, p);
+      hold(model, body.position[p]);
       check_position(model, body.position[p], b, p);
     }
     model.dim == 2 ? update_stress<Scalar, 2>(model, dt, b, body, report) : update_stress<Scalar, 3>(model, dt, b, body, report);

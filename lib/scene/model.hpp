@@ -83,6 +83,10 @@ struct Model {
   bool is_periodic(int axis) const { return faces[std::size_t(2 * axis)].kind == deck::ContactKind::periodic; }
 };
 
+/// Closed faces hold what passes them: separate and friction faces let material pass while it presses on the nodes within only, not on those
+/// of the face. A particle up to this far beyond one, cells, is set back onto it; one that is farther is part of a run that broke down.
+inline constexpr double held_within = 0.5;
+
 /// Builds the model of a deck: seeds bodies, evaluates initial fields, prepares walls and obstacles.
 /// Throws DeckError (overlap, empty body, missing height-map values, …) or IoError (files).
 Model build_model(const deck::Deck& deck);

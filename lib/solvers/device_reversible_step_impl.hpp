@@ -57,7 +57,7 @@ void DeviceReversibleStep<T, Dim, Space>::g2p_adjoint() {
   for (std::size_t b = 0; b < bars_.size(); ++b) {
     const auto& body = this->bodies_[b];
     bars_[b].kernels->g2p(this->space_, body.tiles, tables(b), this->tile_table(body), this->constants_, this->grid_.tables().neighbour,
-                          this->grid_.tables().grid);
+                          this->grid_.tables().grid, this->cells_);
   }
 }
 

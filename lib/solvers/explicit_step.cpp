@@ -9,6 +9,22 @@
 #include "core/stopwatch.hpp"
 
 namespace jaxmpm {
+namespace {
+
+/// What holds particles along an axis: an open face nothing, though what passes it is noticed, a periodic one nothing at all.
+PlaceBounds place_bounds(const Model& model, int axis) {
+  constexpr double far = std::numeric_limits<double>::infinity();
+  PlaceBounds at{-far, far, -far, far};
+  if (model.is_periodic(axis)) return at;
+  const double last = model.cells[std::size_t(axis)];
+  at.lowest = 0, at.highest = last;
+  if (!model.is_open(axis, false)) at.lower = 0, at.lowest = -held_within;
+  if (!model.is_open(axis, true)) at.upper = last, at.highest = last + held_within;
+  return at;
+}
+
+}  // namespace
+
 /// One explicit step, stress updated last (Du & He 2025, Eqs 9–18).
 template <class T, int Dim>
 void ExplicitStep<T, Dim>::step(double dt) {
@@ -30,10 +46,8 @@ ExplicitStep<T, Dim>::ExplicitStep(const Model& model)
       rest_(model.method.rest),
       supports_(kernels_.arena_size) {
   for (std::size_t d = 0; d < Dim; ++d) {
-    const bool periodic = model.is_periodic(int(d));
-    constexpr double far = std::numeric_limits<double>::infinity();
-    domain_.lower[d] = periodic ? -far : 0, domain_.upper[d] = periodic ? far : model.cells[d];
-    if (periodic) blocks_.period[d] = model.cells[d] / BlockShape<Dim, 2>::B;
+    domain_[d] = place_bounds(model, int(d));
+    if (model.is_periodic(int(d))) blocks_.period[d] = model.cells[d] / BlockShape<Dim, 2>::B;
   }
   constants_ = {T(0), T(model.cell_size), T(model.method.flip_fraction), T(model.method.volume_averaging)};
   grid_.record_contact(model.account_energy);

@@ -77,7 +77,8 @@ void ReversibleStep<T, Dim>::g2p_adjoint() {
   parallel_for_host("jaxmpm::g2p_adjoint", tiles.size(), [&](std::size_t t) {
     const Tile& tile = tiles[t];
     adjoint_.g2p(this->bodies_[tile.body], tile, this->blocks_, this->grid_.grid(), *material_adjoints_[tile.body], this->constants_,
-                 this->arena_origin(tile), this->arenas_.data() + t * this->kernels_.arena_size, bars_[tile.body], tile_reports_[t]);
+                 this->arena_origin(tile), this->domain_, this->arenas_.data() + t * this->kernels_.arena_size, bars_[tile.body],
+                 tile_reports_[t]);
   });
 }
 

@@ -114,6 +114,23 @@ class Invert(InverseTest):
             self.assertGreater(found["standard_error"], 1e-6)
             self.assertLess(abs(found["value"] - truth), 3 * found["standard_error"])
 
+    def test_data_of_another_model_are_told_from_noise(self):
+        """Truth with another transfer: no values of the unknowns follow it, and standard errors do not cover that."""
+        observation = {"kind": "particles", "body": "water", "field": "position", "file": "truth/results.h5", "from_time": 0.01}
+        noisy = self.invert(self.deck(observations=[{**observation, "noise": {"deviation": 0.001, "seed": 3}}]), "noisy")
+        self.assertNotIn("is no noise", noisy)
+        self.assertIs(self.result("noisy")["observations"][0]["noise"], True)
+        self.run_deck(self.write(scene(**TRUTH, method={"transfer": "flip", "flip_fraction": 0.9}), "other.json"), "other")
+        other = self.invert(self.deck(observations=[{**observation, "file": "other/results.h5"}]), "found")
+        self.assertIn("is no noise", other)
+        left = self.result("found")["observations"][0]
+        self.assertIs(left["noise"], False)
+        self.assertGreater(left["correlation"], 0.5)
+
+    def test_data_after_the_end_are_left_out_and_told(self):
+        deck = self.deck(time={"end": 0.05, "step": 4e-4})
+        self.assertRegex(self.invert(deck, "short"), r"/inverse/observations/0: \d+ of \d+ rows of '.*truth/results.h5' are of times after the run's end at 0.05 s")
+
     def test_a_network_of_the_velocity(self):
         bodies = [{"name": "water", "material": "water", "shape": {"box": {"min": [0, 0], "max": [0.3, 0.3]}},
                  "velocity": [{"mlp": {"inputs": ["y"], "hidden": [6, 6], "activation": "tanh", "input_scale": [4]}}, 0]}]

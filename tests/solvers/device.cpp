@@ -90,6 +90,8 @@ TEST_CASE("device stepper agrees with the host's in 2D") { for_each_device_scene
 TEST_CASE("device stepper agrees with the host's in 3D") { for_each_device_scene_3d(compare_scene); }
 TEST_CASE("device stepper agrees with the host's where walls move and motion is damped") { for_each_driven_device_scene(compare_scene); }
 
+TEST_CASE("device stepper agrees with the host's where a face holds particles") { for_creeping_device_scene(compare_scene); }
+
 TEST_CASE("device stepper names the particle that leaves the domain") {
   const Model model = device_scene<Apic>(water(), sand(), deck::ContactKind::slip);
   DeviceStep<double, 2, Host> device(model, device_detail::scheme_of<Apic, Host>());

@@ -119,3 +119,4 @@ TEST_CASE("the adjoint on a device agrees with the host's in 3D") { for_each_dev
 TEST_CASE("the adjoint on a device agrees with the host's where walls move and motion is damped") {
   for_each_driven_device_scene(compare_scene);
 }
+TEST_CASE("the adjoint on a device agrees with the host's where a face holds particles") { for_creeping_device_scene(compare_scene); }

@@ -44,6 +44,12 @@ void for_each_device_scene_3d(const F& f) {
   SECTION("FLIP, cubic, separate") { section(Scheme<double, 3, 4, Transfer::flip, false>{}, water(2), rubber(), Kind::separate); }
   SECTION("APIC, quadratic, single precision") { section(Scheme<float, 3, 3, Transfer::apic, false>{}, water(), sand(), Kind::friction); }
 }
+/// Particles that a face holds.
+template <class F>
+void for_creeping_device_scene(const F& f) {
+  using Sch = Scheme<double, 2, 3, deck::Transfer::apic, false>;
+  f(Sch{}, creeping_scene(2, device_scene<Sch>(water(), sand(), deck::ContactKind::separate).method));
+}
 /// Walls that move, and damping.
 template <class F>
 void for_each_driven_device_scene(const F& f) {

@@ -91,6 +91,20 @@ inline Model busy_scene(int dim, const deck::Method& method, const deck::Materia
   return model;
 }
 
+/// Material at a separate face that the first step would take through it: the face's own nodes see it leave, those within push it out.
+inline Model creeping_scene(int dim, const deck::Method& method) {
+  Model model = busy_scene(dim, method, water(1), sand(), deck::ContactKind::separate);
+  model.gravity = {}, model.obstacles.clear();
+  const auto up = std::size_t(dim - 1);
+  for (Body& body : model.bodies)
+    for (std::size_t a = 0; a < body.initial.id.size(); ++a) {
+      double &X = body.initial.position[a][up], &v = body.initial.velocity[a][up];
+      if (X < 0.5) X = 1e-5, v = 0.1, body.initial.mass[a] *= 0.2;
+      else if (X < 1.5) X = 1.4, v = -1.5;
+    }
+  return model;
+}
+
 /// A scene with a body force over space and time, damping, and walls that move where they hold what touches them.
 inline Model driven(Model model) {
   const std::vector<deck::Formula> force{"300*sin(50*x)*cos(700*t)", "A*y*x - 100*t", 5.0};

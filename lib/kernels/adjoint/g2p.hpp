@@ -16,8 +16,9 @@ template <class Sch>
 JAXMPM_INLINE void update_particles_adjoint(const Particles<typename Sch::T, Sch::Dim>& p, std::size_t s, int count,
                                             const Pack<typename Sch::T, batch<typename Sch::T>>* gathered,
                                             const MaterialAdjoint<typename Sch::T, Sch::Dim>& material,
-                                            const StepConstants<typename Sch::T>& step, Particles<typename Sch::T, Sch::Dim>& bar,
-                                            Pack<typename Sch::T, batch<typename Sch::T>>* quads, AdjointReport& report) {
+                                            const StepConstants<typename Sch::T>& step, const DomainBounds<Sch::Dim>& domain,
+                                            Particles<typename Sch::T, Sch::Dim>& bar, Pack<typename Sch::T, batch<typename Sch::T>>* quads,
+                                            AdjointReport& report) {
   using T = typename Sch::T;
   using G = GatheredQuads<Sch>;
   constexpr int W = batch<T>, Dim = Sch::Dim;
@@ -28,11 +29,14 @@ JAXMPM_INLINE void update_particles_adjoint(const Particles<typename Sch::T, Sch
   for (int c = 0; c < Dim; ++c) {  // x ← x + Δt v, and the velocity
     alignas(64) T place[W];
     alignas(64) double by_x[W];
-    load_places(bar.position[std::size_t(c)].data() + s, count, by_x);
+    double* bar_x = bar.position[std::size_t(c)].data() + s;
+    const P per_cell(step.dt / step.cell_size);
+    drop_held(p.position[std::size_t(c)].data() + s, count, per_cell * component(G::value, c), domain[std::size_t(c)], bar_x);
+    load_places(bar_x, count, by_x);
     for (int l = 0; l < W; ++l) place[l] = T(by_x[l]);
     T* by_v = bar.velocity[std::size_t(c)].data() + s;
     const P end = load(by_v, count);
-    by(G::value, c) = P(step.dt / step.cell_size) * P::load(place);
+    by(G::value, c) = per_cell * P::load(place);
     if constexpr (Sch::flip) {
       const P blend(step.flip_fraction), pic = component(G::value, c);
       by(G::value, c) += (P(T(1)) - blend) * end;
@@ -83,8 +87,8 @@ JAXMPM_INLINE void update_particles_adjoint(const Particles<typename Sch::T, Sch
 template <class Sch>
 void g2p_adjoint_tile(const Particles<typename Sch::T, Sch::Dim>& p, std::size_t begin, std::size_t end,
                       const MaterialAdjoint<typename Sch::T, Sch::Dim>& material, const StepConstants<typename Sch::T>& step,
-                      const Index<Sch::Dim>& origin, const typename Sch::T* velocities, typename Sch::T* arena,
-                      Particles<typename Sch::T, Sch::Dim>& bar, AdjointReport& report) {
+                      const Index<Sch::Dim>& origin, const DomainBounds<Sch::Dim>& domain, const typename Sch::T* velocities,
+                      typename Sch::T* arena, Particles<typename Sch::T, Sch::Dim>& bar, AdjointReport& report) {
   using T = typename Sch::T;
   using G = GatheredQuads<Sch>;
   using R = typename StencilRows<Sch>::R;
@@ -106,7 +110,7 @@ void g2p_adjoint_tile(const Particles<typename Sch::T, Sch::Dim>& p, std::size_t
     Pack<T, W> packs[decltype(gathered)::stride], quads[decltype(gathered)::stride];
     gathered.read(packs);
     for (auto& q : quads) q = Pack<T, W>(T(0));
-    update_particles_adjoint<Sch>(p, s, count, packs, material, step, bar, quads, report);
+    update_particles_adjoint<Sch>(p, s, count, packs, material, step, domain, bar, quads, report);
     gathered.fill(quads);
 
     PlaceSums<Sch> by_place;

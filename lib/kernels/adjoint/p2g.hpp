@@ -1,7 +1,5 @@
 #pragma once
 // Adjoint of the transfer from particles to grid: the reverse of a scatter is a gather, of the nodes' derivatives this time.
-#include <limits>
-
 #include "kernels/adjoint/contract.hpp"
 #include "kernels/adjoint/material_adjoint.hpp"
 
@@ -25,9 +23,8 @@ struct PlaceSums {
     Pack<T, batch<T>> packs[decltype(rows)::stride];
     rows.read(packs);
     for (int j = 0; j < Sch::Dim; ++j) {
-      constexpr double far = std::numeric_limits<double>::infinity();
       const auto sum = (packs[4 * j] + packs[4 * j + 1]) + (packs[4 * j + 2] + packs[4 * j + 3]);
-      move_places(bar.position[std::size_t(j)].data() + s, count, sum, -far, far);
+      add_to_places(bar.position[std::size_t(j)].data() + s, count, sum);
     }
   }
 };

@@ -10,7 +10,8 @@ struct AdjointKernels {
   Vector<T, Dim> (*update_nodes)(const T* raw, const GridConstants<T, Dim>&, T* own) = nullptr;
   /// Adjoint of g2p: `grid` holds the velocities of all blocks, `arena` receives the derivatives by the nodes that the tile saw.
   void (*g2p)(const Particles<T, Dim>&, const Tile&, const Blocks<Dim>&, const T* grid, const MaterialAdjoint<T, Dim>&,
-              const StepConstants<T>&, const Index<Dim>& origin, T* arena, Particles<T, Dim>& bar, AdjointReport&) = nullptr;
+              const StepConstants<T>&, const Index<Dim>& origin, const DomainBounds<Dim>&, T* arena, Particles<T, Dim>& bar,
+              AdjointReport&) = nullptr;
   /// Adjoint of p2g: `by_sums` holds the derivatives by the sums of all blocks.
   void (*p2g)(const Particles<T, Dim>&, const Tile&, const Blocks<Dim>&, const T* by_sums, const MaterialKernel<T, Dim>&,
               const MaterialAdjoint<T, Dim>&, const StepConstants<T>&, const Index<Dim>& origin, Particles<T, Dim>& bar,

@@ -12,11 +12,11 @@ AdjointKernels<typename Sch::T, Sch::Dim> adjoint_kernels_of() {
   AdjointKernels<T, Dim> k;
   k.update_nodes = &update_nodes_adjoint<Sch>;
   k.g2p = [](const Particles<T, Dim>& p, const Tile& tile, const Blocks<Dim>& blocks, const T* grid,
-             const MaterialAdjoint<T, Dim>& material, const StepConstants<T>& step, const Index<Dim>& origin, T* arena,
-             Particles<T, Dim>& bar, AdjointReport& report) {
+             const MaterialAdjoint<T, Dim>& material, const StepConstants<T>& step, const Index<Dim>& origin,
+             const DomainBounds<Dim>& domain, T* arena, Particles<T, Dim>& bar, AdjointReport& report) {
     alignas(64) T velocities[Sch::arena_size];
     load_arena<Sch>(blocks, tile.block, grid, velocities);
-    g2p_adjoint_tile<Sch>(p, tile.begin, tile.end, material, step, origin, velocities, arena, bar, report);
+    g2p_adjoint_tile<Sch>(p, tile.begin, tile.end, material, step, origin, domain, velocities, arena, bar, report);
   };
   k.p2g = [](const Particles<T, Dim>& p, const Tile& tile, const Blocks<Dim>& blocks, const T* by_sums,
              const MaterialKernel<T, Dim>& material, const MaterialAdjoint<T, Dim>& adjoint, const StepConstants<T>& step,

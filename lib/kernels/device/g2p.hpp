@@ -157,9 +157,10 @@ struct GatherTiles {
       speed2 += v * v;
       const T move = per.move * pic;
       mine.displacement = max(mine.displacement, abs(move));
-      const double X = state.at.X[c] + double(move);
-      particles.position(c, p) = X;
-      if (!(X >= 0.0 && X <= double(cells[std::size_t(c)]))) mine.unsound = true;
+      const double X = state.at.X[c] + double(move), last = cells[std::size_t(c)];
+      const bool held = X >= -held_within && X <= last + held_within;
+      particles.position(c, p) = held ? min(max(X, 0.0), last) : X;
+      if (!held) mine.unsound = true;
     }
     Matrix<T, Dim> H;
     for (int c = 0; c < Dim; ++c)

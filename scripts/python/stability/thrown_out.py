@@ -20,6 +20,10 @@ def inside(run, dim=2):
     return max((-place).max(), (place - 40 * CELL).max()) / CELL
 
 
+def what_failed(said):
+    return next((words for words in ("left the domain", "not finite") if words in said), first_sentence(said))
+
+
 def main():
     study = Study(
         __file__, "Particles thrown out of the domain",
@@ -35,7 +39,7 @@ def main():
                     outcomes.append((law["model"], basis, run))
             good = [o for o in outcomes if o[2].done and inside(o[2]) <= 0]
             held, tried = held + len(good), tried + len(outcomes)
-            bad = [f"{model}, {basis}: exit {run.code}, {first_sentence(run.said)}" for model, basis, run in outcomes if (model, basis, run) not in good]
+            bad = [f"{model}, {basis}: exit {run.code}, {what_failed(run.said)}" for model, basis, run in outcomes if (model, basis, run) not in good]
             fastest = max([fastest] + [mach] * (len(good) == len(outcomes)))
             rows.append([kind, mach, f"{len(good)} of {len(outcomes)}", "; ".join(bad) or "–"])
     study.table("Thrown into a corner with the automatic step (water, neo_hookean and linear_elastic, linear and quadratic)", ["walls", "speed / c", "held", "others"], rows)

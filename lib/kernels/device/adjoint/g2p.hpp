@@ -39,6 +39,7 @@ struct GatherAdjoint {
   StepConstants<T> step;
   const int* neighbour;  // Blocks::neighbour
   const T* grid;         // [block][own]: velocities
+  Index<Dim> cells;      // of the domain
   Out out;
   double *flip_fraction, *body;  // places of ConstantBars
 
@@ -67,6 +68,8 @@ struct GatherAdjoint {
     By by;
     for (int c = 0; c < Dim; ++c) {  // x ← x + Δt v, and the velocity
       const T end = bars.velocity(c, p);
+      const double X = particles.position(c, p) + double(scales.move * sum.value[c]);
+      if (X < 0.0 || X > double(cells[std::size_t(c)])) bars.position(c, p) = 0.0;  // a face holds it
       by.component[c].plain = scales.move * T(bars.position(c, p));
       if constexpr (Sch::flip) {
         by.component[c].plain += (T(1) - step.flip_fraction) * end;

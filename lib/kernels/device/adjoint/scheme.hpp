@@ -21,7 +21,7 @@ class BodyAdjointKernels {
   virtual ~BodyAdjointKernels() = default;
   /// Adjoint of g2p: afterwards the tiles' arenas hold derivatives by the nodes that they saw. `grid`: velocities of all blocks.
   virtual void g2p(const Space&, std::size_t tiles, const BodyBars<T, Dim>&, const TileTable<T, Dim>&, const StepConstants<T>&,
-                   const int* neighbour, const T* grid) const = 0;
+                   const int* neighbour, const T* grid, const Index<Dim>& cells) const = 0;
   /// Adjoint of p2g. `by_sums`: derivatives by the sums of all blocks.
   virtual void p2g(const Space&, std::size_t tiles, const BodyBars<T, Dim>&, const TileTable<T, Dim>&, const StepConstants<T>&,
                    const int* neighbour, const T* by_sums) const = 0;

@@ -17,12 +17,12 @@ class LawAdjointKernels final : public BodyAdjointKernels<typename Sch::T, Sch::
   explicit LawAdjointKernels(const Law& law) : law_(law) {}
 
   void g2p(const Space& space, std::size_t tiles, const BodyBars<T, Dim>& of, const TileTable<T, Dim>& table, const StepConstants<T>& step,
-           const int* neighbour, const T* grid) const override {
+           const int* neighbour, const T* grid, const Index<Dim>& cells) const override {
     using Kernel = GatherAdjoint<Sch, Law, Space>;
     const GatheredBarTable<Sch> gathered{of.gathered, of.particles.stride};
     parallel_for_teams<Kernel::threads, Kernel::resident>(
         "jaxmpm::g2p_adjoint", space, tiles, Kernel::scratch,
-        Kernel{of.particles, of.bars, table, law_, step, neighbour, grid, gathered, of.flip_fraction, of.body});
+        Kernel{of.particles, of.bars, table, law_, step, neighbour, grid, cells, gathered, of.flip_fraction, of.body});
     using Scatter = ScatterTiles<Sch, GatheredBarTable<Sch>, Space>;
     parallel_for_teams<Scatter::threads, Scatter::resident>("jaxmpm::g2p_adjoint_scatter", space, tiles, Scatter::scratch,
                                                             Scatter{of.particles, table, gathered});
