@@ -2,23 +2,40 @@
 // What the adjoints of both transfers share: a transfer is f(X) = Σ_i [w_i A + Σ_k (d_k)_i B_k + Σ_k (g_k)_i C_k] · N_i with a particle's
 // quads A, B_k, C_k and the nodes' quads N_i (particle to grid: the quads are the particle's and N the derivatives by the node; grid to
 // particle: the other way round), so both need the same ∂f/∂X.
+#include <type_traits>
+
 #include "kernels/g2p.hpp"
 
 namespace jaxmpm {
 
 /// sums[j] += ∂f/∂X_j of one particle (lane l), one pack per axis: still to be added over its lanes. `rest`, `moments`, `slopes`: the
 /// particle's quads A, B_0 and C_0, −1 where there are none. Where f depends on an axis only through its own factor, that factor is
-/// replaced by its derivative: w by g, d by d', g by g'.
-template <class Sch, int rest, int moments, int slopes, class Stencil>
+/// replaced by its derivative: w by g, d by d', g by g'. `gathered`, where it is not null, receives what gather() finds in the same nodes.
+template <class Sch, int rest, int moments, int slopes, class Stencil, class Gathered>
 JAXMPM_INLINE void contract(const StencilRows<Sch>& rows, const Stencil& t, int l, const typename Sch::T* quads,
-                            Pack<typename Sch::T, RowShape<typename Sch::T, Sch::S>::N>* sums) {
+                            Pack<typename Sch::T, RowShape<typename Sch::T, Sch::S>::N>* sums, Gathered gathered) {
   using T = typename Sch::T;
   using Row = RowShape<T, Sch::S>;
-  constexpr int S = Sch::S, N = Row::N, last = Sch::Dim - 1;
+  constexpr int S = Sch::S, N = Row::N, last = Sch::Dim - 1, first_slope = moments >= 0 ? 1 + Sch::Dim : 1;
   using R = Pack<T, N>;
   const T* z = t.last.row(l);
   static_for<Row::pieces>([&](auto piece) {
     constexpr int c = piece;
+    // What gather() finds, from the nodes summed over all axes but the last: with w, and per axis with d and g.
+    const auto put = [&](const R& w_sum, std::array<R, last> d_sum, std::array<R, last> g_sum) {
+      if constexpr (!std::is_null_pointer_v<Gathered>) {
+        const R w_z = spread_quad<Stencil::w_quad, c, N>(z);
+        gathered[0] += w_sum * w_z;
+        if constexpr (moments >= 0) {
+          for (int k = 0; k < last; ++k) gathered[1 + k] += d_sum[std::size_t(k)] * w_z;
+          gathered[1 + last] += w_sum * spread_quad<Stencil::d_quad, c, N>(z);
+        }
+        if constexpr (slopes >= 0) {
+          for (int k = 0; k < last; ++k) gathered[first_slope + k] += g_sum[std::size_t(k)] * w_z;
+          gathered[first_slope + last] += w_sum * spread_quad<Stencil::g_quad, c, N>(z);
+        }
+      }
+    };
     const R w = spread_quad<Stencil::w_quad, c, N>(z), g = spread_quad<Stencil::g_quad, c, N>(z);
     R line(T(0)), line_by_z(T(0));  // what goes with w on all axes but the last, and its derivative by the last
     if constexpr (rest >= 0) {
@@ -45,39 +62,48 @@ JAXMPM_INLINE void contract(const StencilRows<Sch>& rows, const Stencil& t, int 
         slope[k] = w * C, slope_by_z[k] = g * C;
       }
     });
-    const auto along = [&](int k, int a, const R* m, const R* s) {  // d B_k + g C_k at node a of axis k
-      R r(T(0));
-      if constexpr (moments >= 0) r = R(t.d[k][a][l]) * m[k];
-      if constexpr (slopes >= 0) r += R(t.g[k][a][l]) * s[k];
-      return r;
-    };
-    const auto along_derived = [&](int k, int a) {  // its derivative by axis k
-      R r(T(0));
-      if constexpr (moments >= 0) r = R(t.dd[k][a][l]) * moment[k];
-      if constexpr (slopes >= 0) r += R(t.gg[k][a][l]) * slope[k];
-      return r;
-    };
+    // The nodes are summed over the axes before the last first, with each factor or its derivative: fewer products than to weigh each node.
     if constexpr (Sch::Dim == 2) {
+      R by_w(T(0)), by_g(T(0)), by_d(T(0)), by_dd(T(0)), by_gg(T(0));
       for (int a = 0; a < S; ++a) {
         const R& node = rows.row[a][c];
-        sums[0] += node * (R(t.g[0][a][l]) * line + along_derived(0, a));
-        sums[1] += node * (R(t.w[0][a][l]) * line_by_z + along(0, a, moment_by_z, slope_by_z));
+        by_w += R(t.w[0][a][l]) * node, by_g += R(t.g[0][a][l]) * node;
+        if constexpr (moments >= 0) by_d += R(t.d[0][a][l]) * node, by_dd += R(t.dd[0][a][l]) * node;
+        if constexpr (slopes >= 0) by_gg += R(t.gg[0][a][l]) * node;
       }
+      put(by_w, {by_d}, {by_g});
+      sums[0] += by_g * line, sums[1] += by_w * line_by_z;
+      if constexpr (moments >= 0) sums[0] += by_dd * moment[0], sums[1] += by_d * moment_by_z[0];
+      if constexpr (slopes >= 0) sums[0] += by_gg * slope[0], sums[1] += by_g * slope_by_z[0];
     } else {
-      R y[S], y_by_y[S], y_by_z[S];
-      for (int b = 0; b < S; ++b)
-        y[b] = along(1, b, moment, slope), y_by_y[b] = along_derived(1, b), y_by_z[b] = along(1, b, moment_by_z, slope_by_z);
+      R ww(T(0)), gw(T(0)), wg(T(0));                                  // factors along x and along y
+      R dw(T(0)), wd(T(0)), ddw(T(0)), gd(T(0)), dg(T(0)), wdd(T(0));  // with moments
+      R gg_w(T(0)), g_g(T(0)), w_gg(T(0));                             // with slopes: g', and g along both
       for (int a = 0; a < S; ++a) {
-        const R wx(t.w[0][a][l]), gx(t.g[0][a][l]);
-        const R plane = wx * line + along(0, a, moment, slope), plane_by_x = gx * line + along_derived(0, a);
-        const R plane_by_z = wx * line_by_z + along(0, a, moment_by_z, slope_by_z);
+        R by_w(T(0)), by_g(T(0)), by_d(T(0)), by_dd(T(0)), by_gg(T(0));
         for (int b = 0; b < S; ++b) {
           const R& node = rows.row[a * S + b][c];
-          const R wy(t.w[1][b][l]);
-          sums[0] += node * (wy * plane_by_x + gx * y[b]);
-          sums[1] += node * (R(t.g[1][b][l]) * plane + wx * y_by_y[b]);
-          sums[2] += node * (wy * plane_by_z + wx * y_by_z[b]);
+          by_w += R(t.w[1][b][l]) * node, by_g += R(t.g[1][b][l]) * node;
+          if constexpr (moments >= 0) by_d += R(t.d[1][b][l]) * node, by_dd += R(t.dd[1][b][l]) * node;
+          if constexpr (slopes >= 0) by_gg += R(t.gg[1][b][l]) * node;
         }
+        const R w_x(t.w[0][a][l]), g_x(t.g[0][a][l]);
+        ww += w_x * by_w, gw += g_x * by_w, wg += w_x * by_g;
+        if constexpr (moments >= 0) {
+          const R d_x(t.d[0][a][l]), dd_x(t.dd[0][a][l]);
+          dw += d_x * by_w, wd += w_x * by_d, ddw += dd_x * by_w, gd += g_x * by_d, dg += d_x * by_g, wdd += w_x * by_dd;
+        }
+        if constexpr (slopes >= 0) gg_w += R(t.gg[0][a][l]) * by_w, g_g += g_x * by_g, w_gg += w_x * by_gg;
+      }
+      put(ww, {dw, wd}, {gw, wg});
+      sums[0] += gw * line, sums[1] += wg * line, sums[2] += ww * line_by_z;
+      if constexpr (moments >= 0) {
+        sums[0] += ddw * moment[0], sums[1] += dg * moment[0], sums[2] += dw * moment_by_z[0];
+        sums[0] += gd * moment[1], sums[1] += wdd * moment[1], sums[2] += wd * moment_by_z[1];
+      }
+      if constexpr (slopes >= 0) {
+        sums[0] += gg_w * slope[0], sums[1] += g_g * slope[0], sums[2] += gw * slope_by_z[0];
+        sums[0] += g_g * slope[1], sums[1] += w_gg * slope[1], sums[2] += wg * slope_by_z[1];
       }
     }
   });

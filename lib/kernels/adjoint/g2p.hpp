@@ -127,10 +127,10 @@ void g2p_adjoint_tile(const Particles<typename Sch::T, Sch::Dim>& p, std::size_t
       R place[PlaceSums<Sch>::padded];
       for (R& x : place) x = R(T(0));
       scatter<Sch, G::value, moments, slopes>(by_rows[0], t, l, gathered.row(l));
-      contract<Sch, G::value, moments, slopes>(rows[0], t, l, gathered.row(l), place);
+      contract<Sch, G::value, moments, slopes>(rows[0], t, l, gathered.row(l), place, nullptr);
       if constexpr (Sch::planes == 2) {
         scatter<Sch, G::change, -1, -1>(by_rows[1], t, l, gathered.row(l));
-        contract<Sch, G::change, -1, -1>(rows[1], t, l, gathered.row(l), place);
+        contract<Sch, G::change, -1, -1>(rows[1], t, l, gathered.row(l), place, nullptr);
       }
       by_place.put(l, place);
     }

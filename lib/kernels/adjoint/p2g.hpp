@@ -132,8 +132,8 @@ void p2g_adjoint_tile(const Particles<typename Sch::T, Sch::Dim>& p, std::size_t
       static_for<Sch::planes>([&](auto plane) {
         constexpr bool full = G::full(plane);
         constexpr PlaneQuads of = Q::in_plane(plane);
-        gather<Sch, full && G::with_d, full && G::with_g>(rows[plane], t, l, sums + G::first(plane));
-        contract<Sch, of.rest, of.moments, of.slopes>(rows[plane], t, l, q.rows.row(l), place);
+        static_assert((full && G::with_d) == (of.moments >= 0) && (full && G::with_g) == (of.slopes >= 0));
+        contract<Sch, of.rest, of.moments, of.slopes>(rows[plane], t, l, q.rows.row(l), place, sums + G::first(plane));
       });
       for (int i = 0; i < G::padded; i += G::per_store) sum_quads<T, R::lanes>(sums + i).store(gathered.row(l) + 4 * i);
       by_place.put(l, place);
