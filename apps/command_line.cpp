@@ -6,6 +6,7 @@
 
 #include "core/error.hpp"
 #include "core/provenance.hpp"
+#include "fields/files.hpp"
 
 namespace jaxmpm {
 namespace {
@@ -36,7 +37,7 @@ CLI::Option* add_results_options(CLI::App& app, ResultsOptions& options, const s
   const CLI::Validator above_zero(
       [](const std::string& text) {
         double minutes = 0;
-        return CLI::detail::lexical_cast(text, minutes) && minutes > 0 ? std::string() : "'" + text + "' is no number of minutes above 0";
+        return parse_number(text, minutes) && minutes > 0 ? std::string() : "'" + text + "' is no number of minutes above 0";
       },
       "");
   app.add_option("--max-walltime", options.max_walltime, walltime)->check(above_zero)->type_name("MIN");

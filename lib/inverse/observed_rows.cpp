@@ -34,15 +34,14 @@ std::vector<ObservedRow> within_window(std::vector<ObservedRow> rows, const deck
   sort_rows(rows, place);
   const double first = rows.front().time, last = rows.back().time, tolerance = same_time * place.end;
   const double from = observed.from_time.value_or(first), to = std::min(observed.to_time.value_or(place.end), place.end);
-  if (first <= to + tolerance && last > place.end + tolerance && !observed.to_time)
-    if (const auto late = std::find_if(rows.begin(), rows.end(), [&](const ObservedRow& r) { return r.time > place.end + tolerance; });
-        late->line > 0)  // the results of a longer run may go on
+  const auto late = std::find_if(rows.begin(), rows.end(), [&](const ObservedRow& r) { return r.time > place.end + tolerance; });
+  if (late != rows.end() && !observed.to_time) {
+    if (late->line > 0 && first <= to + tolerance)  // the results of a longer run may go on
       place.bad_file(late->line, "the time " + number_text(late->time) + " s is after the run's end at " + number_text(place.end) +
                                      " s; make /time/end later, or leave such rows out by to_time");
-  const auto after_end = std::count_if(rows.begin(), rows.end(), [&](const ObservedRow& r) { return r.time > place.end + tolerance; });
-  if (after_end > 0 && !observed.to_time)
-    spdlog::info("{}: {} of {} rows of '{}' are of times after the run's end at {} s, and are left out.", place.pointer, after_end,
+    spdlog::info("{}: {} of {} rows of '{}' are of times after the run's end at {} s, and are left out.", place.pointer, rows.end() - late,
                  rows.size(), place.file, number_text(place.end));
+  }
   std::vector<ObservedRow> kept;
   double start = 0, counted = -1;  // the first time kept, and the last multiple of `every` that has had its time
   for (ObservedRow& row : rows) {
