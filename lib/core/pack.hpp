@@ -49,11 +49,6 @@ struct Mask {
   friend JAXMPM_INLINE Mask operator&&(Mask a, Mask b) { return {a.m & b.m}; }
   friend JAXMPM_INLINE Mask operator||(Mask a, Mask b) { return {a.m | b.m}; }
   friend JAXMPM_INLINE Mask operator!(Mask a) { return {~a.m}; }
-  friend JAXMPM_INLINE bool any(Mask a) {
-    Lane r = 0;
-    for (int i = 0; i < N; ++i) r |= a.m[i];
-    return r != 0;
-  }
 };
 
 template <class T, int N>
@@ -103,6 +98,9 @@ struct Pack {
     for (int i = 0; i < N; ++i) lane[i] = f(lane[i]);
     return load(lane);
   }
+  friend JAXMPM_INLINE Pack floor(Pack a) {
+    return a.map([](T x) { return std::floor(x); });
+  }
   friend JAXMPM_INLINE Pack sqrt(Pack a) {
     return a.map([](T x) { return std::sqrt(x); });
   }
@@ -116,14 +114,6 @@ struct Pack {
     return a.map([](T x) { return std::exp(x); });
   }
 };
-
-/// Largest lane.
-template <class T, int N>
-JAXMPM_INLINE T largest(Pack<T, N> a) {
-  T r = a[0];
-  for (int i = 1; i < N; ++i) r = a[i] > r ? a[i] : r;
-  return r;
-}
 
 /// Calls f(integral_constant 0) … f(integral_constant N−1): a loop whose index is known at compile time.
 template <class F, int... I>
@@ -150,6 +140,7 @@ namespace pack_detail {
 #define JAXMPM_INTERLEAVED(i) (Half * (N / 2) + (i) / 2 + (i) % 2 * N)
 #define JAXMPM_REPEATED(i) (Offset + (i) % 4)
 #define JAXMPM_SPREAD(i) (Offset + (i) / 4)
+#define JAXMPM_FOLLOWING(i) (Offset + (i))
 /// {a[h], b[h], a[h+1], b[h+1], …} with h = 0 (Half 0) or N/2 (Half 1).
 template <int Half, class T, int N>
 JAXMPM_INLINE Pack<T, N> interleave(Pack<T, N> a, Pack<T, N> b) {
@@ -163,6 +154,12 @@ template <int Offset, class T, int N>
 JAXMPM_INLINE Pack<T, N> spread_quad(Pack<T, N> a) {
   JAXMPM_SHUFFLE(a, a, JAXMPM_SPREAD)
 }
+/// N lanes of a pack from Offset on; of two packs, as if the second followed the first.
+template <int Offset, int N, class T, int M>
+JAXMPM_INLINE Pack<T, N> part(Pack<T, M> a, Pack<T, M> b) {
+  JAXMPM_SHUFFLE(a, b, JAXMPM_FOLLOWING)
+}
+#undef JAXMPM_FOLLOWING
 #undef JAXMPM_SPREAD
 #undef JAXMPM_REPEATED
 #undef JAXMPM_INTERLEAVED
@@ -172,6 +169,42 @@ JAXMPM_INLINE Pack<T, N> spread_quad(Pack<T, N> a) {
 #undef JAXMPM_LANES_4
 #undef JAXMPM_LANES_2
 }  // namespace pack_detail
+
+template <class T, int N>
+JAXMPM_INLINE Pack<T, N / 2> lower_half(Pack<T, N> a) {
+  return pack_detail::part<0, N / 2>(a, a);
+}
+template <class T, int N>
+JAXMPM_INLINE Pack<T, N / 2> upper_half(Pack<T, N> a) {
+  return pack_detail::part<N / 2, N / 2>(a, a);
+}
+template <class T, int N>
+JAXMPM_INLINE Pack<T, 2 * N> join(Pack<T, N> lower, Pack<T, N> upper) {
+  return pack_detail::part<0, 2 * N>(lower, upper);
+}
+
+/// Each lane as a To: numbers are rounded to floats, and cut off to integers.
+template <class To, class T, int N>
+JAXMPM_INLINE Pack<To, N> convert(Pack<T, N> a) {
+  return Pack<To, N>(__builtin_convertvector(a.v, typename Pack<To, N>::Native));
+}
+
+/// Largest lane.
+template <class T, int N>
+JAXMPM_INLINE T largest(Pack<T, N> a) {
+  if constexpr (N == 2) return a[1] > a[0] ? a[1] : a[0];
+  else return largest(max(lower_half(a), upper_half(a)));
+}
+/// Whether a comparison holds in any lane.
+template <class T, int N>
+JAXMPM_INLINE bool any(Mask<T, N> a) {
+  if constexpr (N == 2) {
+    return (a.m[0] | a.m[1]) != 0;
+  } else {
+    const Pack<typename Mask<T, N>::Lane, N> lanes(a.m);
+    return any(Mask<T, N / 2>{lower_half(lanes).v | upper_half(lanes).v});
+  }
+}
 
 /// Transposes N packs of N lanes in place: log2 N rounds of perfect shuffles.
 template <class T, int N>

@@ -39,6 +39,24 @@ struct GatheredQuads {
   static constexpr int padded = (count + per_store - 1) / per_store * per_store;
 };
 
+/// The end of a gather: part c of the rows along the last axis (factors z), whose nodes have been summed over the other axes with w (`sum`)
+/// and with d or g on each of them in turn. Adds to the sums of the parts before; the first one sets them.
+template <class Sch, int c, bool moments, bool slopes, class Stencil, class R>
+JAXMPM_INLINE void gather_last_axis(const typename Sch::T* z, const R& sum, const R* d, const R* g, R* sums) {
+  constexpr int N = R::lanes, last = Sch::Dim - 1, first_moment = 1, first_slope = moments ? 1 + Sch::Dim : 1;
+  const auto put = [&](int quad, R value) { sums[quad] = c == 0 ? value : sums[quad] + value; };
+  const R w = spread_quad<Stencil::w_quad, c, N>(z);
+  put(0, sum * w);
+  if constexpr (moments) {
+    for (int k = 0; k < last; ++k) put(first_moment + k, d[k] * w);
+    put(first_moment + last, sum * spread_quad<Stencil::d_quad, c, N>(z));
+  }
+  if constexpr (slopes) {
+    for (int k = 0; k < last; ++k) put(first_slope + k, g[k] * w);
+    put(first_slope + last, sum * spread_quad<Stencil::g_quad, c, N>(z));
+  }
+}
+
 /// Σ over the stencil of factor × node, for one particle: quads of sums (the value, then Dim with moments, then Dim with slopes), one pack
 /// per (quad, lane of the row); still to be added along the row.
 template <class Sch, bool moments, bool slopes, class Stencil>
@@ -46,7 +64,7 @@ JAXMPM_INLINE void gather(const StencilRows<Sch>& rows, const Stencil& t, int l,
                           Pack<typename Sch::T, RowShape<typename Sch::T, Sch::S>::N>* sums) {
   using T = typename Sch::T;
   using Row = RowShape<T, Sch::S>;
-  constexpr int S = Sch::S, N = Row::N, last = Sch::Dim - 1, first_moment = 1, first_slope = moments ? 1 + Sch::Dim : 1;
+  constexpr int S = Sch::S, N = Row::N;
   using R = Pack<T, N>;
   const T* z = t.last.row(l);
   static_for<Row::pieces>([&](auto piece) {
@@ -72,17 +90,7 @@ JAXMPM_INLINE void gather(const StencilRows<Sch>& rows, const Stencil& t, int l,
       if constexpr (moments) d[0] += R(t.d[0][a][l]) * line;
       if constexpr (slopes) g[0] += R(t.g[0][a][l]) * line;
     }
-    const auto put = [&](int quad, R value) { sums[quad] = c == 0 ? value : sums[quad] + value; };
-    const R w = spread_quad<Stencil::w_quad, c, N>(z);
-    put(0, sum * w);
-    if constexpr (moments) {
-      for (int k = 0; k < last; ++k) put(first_moment + k, d[k] * w);
-      put(first_moment + last, sum * spread_quad<Stencil::d_quad, c, N>(z));
-    }
-    if constexpr (slopes) {
-      for (int k = 0; k < last; ++k) put(first_slope + k, g[k] * w);
-      put(first_slope + last, sum * spread_quad<Stencil::g_quad, c, N>(z));
-    }
+    gather_last_axis<Sch, c, moments, slopes, Stencil>(z, sum, d, g, sums);
   });
 }
 

@@ -1,8 +1,8 @@
 #pragma once
 // Stencils of W particles at once, laid out for the row loops: nodes of a row (along the last axis) are contiguous, four values each.
 #include <array>
-#include <cmath>
 #include <cstring>
+#include <tuple>
 
 #include "core/pack.hpp"
 #include "core/scalar.hpp"
@@ -51,31 +51,62 @@ JAXMPM_INLINE Pack<T, batch<T>> load_zeros_behind(const T* p, int count) {
   return Pack<T, W>::load(lane);
 }
 
-// Places along an axis and the derivatives by them are in double precision whatever T is: W of them are one or two packs.
+/// Places of W particles along an axis, or the derivatives by them: in double precision whatever T is, so one pack or two.
 template <int W>
 inline constexpr int place_lanes = native_lanes<double> < W ? native_lanes<double> : W;
-
-/// As load(): X[0] … X[W − 1].
 template <int W>
-JAXMPM_INLINE void load_places(const double* p, int count, double (&X)[W]) {
+using Places = std::array<Pack<double, place_lanes<W>>, std::size_t(W / place_lanes<W>)>;
+
+/// As load().
+template <int W>
+JAXMPM_INLINE Places<W> load_places(const double* p, int count) {
   constexpr int N = place_lanes<W>;
-  if (count == W) {
-    for (int l = 0; l < W; l += N) Pack<double, N>::load(p + l).store(X + l);
-  } else {
-    for (int l = 0; l < W; ++l) X[l] = p[l < count ? l : count - 1];
+  alignas(64) double lane[W];
+  if (count < W) {
+    for (int l = 0; l < W; ++l) lane[l] = p[l < count ? l : count - 1];
+    p = lane;
   }
+  Places<W> x;
+  for (int k = 0; k < W / N; ++k) x[std::size_t(k)] = Pack<double, N>::load(p + k * N);
+  return x;
 }
-/// The lanes of a pack in the precision of places.
+template <int W>
+JAXMPM_INLINE void store_places(double* p, const Places<W>& x, int count) {
+  constexpr int N = place_lanes<W>;
+  alignas(64) double lane[W];
+  double* to = count < W ? lane : p;
+  for (int k = 0; k < W / N; ++k) x[std::size_t(k)].store(to + k * N);
+  for (int l = 0; count < W && l < count; ++l) p[l] = lane[l];
+}
+/// Calls f(k) for the packs of places.
+template <int W, class F>
+JAXMPM_INLINE Places<W> make_places(F f) {
+  if constexpr (std::tuple_size_v<Places<W>> == 1) return {f(0)};
+  else return {f(0), f(1)};
+}
+/// Places as one pack of T, and the other way round.
+template <class T, int W>
+JAXMPM_INLINE Pack<T, W> from_places(const Places<W>& x) {
+  if constexpr (std::tuple_size_v<Places<W>> == 1) return convert<T>(x[0]);
+  else return join(convert<T>(x[0]), convert<T>(x[1]));
+}
+template <class T, int W>
+JAXMPM_INLINE Places<W> to_places(Pack<T, W> x) {
+  if constexpr (std::tuple_size_v<Places<W>> == 1) return {convert<double>(x)};
+  else return {convert<double>(lower_half(x)), convert<double>(upper_half(x))};
+}
+/// p[l] + change[l].
 template <class T>
-struct PlaceChange {
-  static constexpr int W = batch<T>;
-  alignas(64) double value[W];
-  explicit JAXMPM_INLINE PlaceChange(Pack<T, W> change) {
-    alignas(64) T lane[W];
-    change.store(lane);
-    for (int l = 0; l < W; ++l) value[l] = double(lane[l]);
-  }
-};
+JAXMPM_INLINE Places<batch<T>> moved(const double* p, int count, Pack<T, batch<T>> change) {
+  const auto from = load_places<batch<T>>(p, count), by = to_places(change);
+  return make_places<batch<T>>([&](std::size_t k) { return from[k] + by[k]; });
+}
+
+/// p[l] += change[l] for the first `count`.
+template <class T>
+JAXMPM_INLINE void add_to_places(double* p, int count, Pack<T, batch<T>> change) {
+  store_places<batch<T>>(p, moved<T>(p, count, change), count);
+}
 
 /// Bounds of the places along an axis, cells. Past `lower` and `upper`, which are closed faces, nothing stays; no face holds what comes to
 /// lie past `lowest` and `highest` (held_within). Infinite where there are none.
@@ -85,64 +116,32 @@ struct PlaceBounds {
 template <int Dim>
 using DomainBounds = std::array<PlaceBounds, std::size_t(Dim)>;
 
-/// p[l] += change[l] for the first `count`, as far as closed faces let them. Returns whether all of them are where faces hold them; those
-/// that are not, and what is no number, stay as they are.
+/// add_to_places() as far as closed faces let it; `change` repeats the last behind `count`. Returns whether all places are where faces hold
+/// them; those that are not, and what is no number, stay as they are.
 template <class T>
 JAXMPM_INLINE bool move_places(double* p, int count, Pack<T, batch<T>> change, const PlaceBounds& at) {
-  constexpr int W = batch<T>, N = place_lanes<W>;
-  using X = Pack<double, N>;
-  const PlaceChange<T> by(change);
-  if (count < W) {
-    bool inside = true;
-    for (int l = 0; l < count; ++l) {
-      const double x = p[l] + by.value[l];
-      const bool held = x >= at.lowest && x <= at.highest;
-      p[l] = held ? min(max(x, at.lower), at.upper) : x;
-      inside = inside && held;
-    }
-    return inside;
-  }
-  Mask<double, N> outside{};
-  for (int l = 0; l < W; l += N) {
-    const X x = X::load(p + l) + X::load(by.value + l);
-    const Mask<double, N> held = (x >= X(at.lowest)) & (x <= X(at.highest));
-    select(held, min(max(x, X(at.lower)), X(at.upper)), x).store(p + l);
-    outside = outside | !held;
-  }
-  return !any(outside);
+  using X = typename Places<batch<T>>::value_type;
+  const auto free = moved<T>(p, count, change);
+  Mask<double, X::lanes> inside = X(0.0) == X(0.0);
+  const auto held = make_places<batch<T>>([&](std::size_t k) {
+    const auto here = (free[k] >= X(at.lowest)) & (free[k] <= X(at.highest));
+    inside = inside & here;
+    return select(here, min(max(free[k], X(at.lower)), X(at.upper)), free[k]);
+  });
+  store_places<batch<T>>(p, held, count);
+  return !any(!inside);
 }
 
-/// Adjoint of what the faces do in move_places: derivatives `bar` by the first `count` places that p[l] + change[l] became are none where a
-/// face holds them.
+/// Adjoint of what the faces do in move_places(): derivatives `bar` by the places that p[l] + change[l] became are none where a face holds
+/// them. Returns what is left.
 template <class T>
-JAXMPM_INLINE void drop_held(const double* p, int count, Pack<T, batch<T>> change, const PlaceBounds& at, double* bar) {
-  constexpr int W = batch<T>, N = place_lanes<W>;
-  using X = Pack<double, N>;
-  const PlaceChange<T> by(change);
-  if (count < W) {
-    for (int l = 0; l < count; ++l) {
-      const double x = p[l] + by.value[l];
-      if (x < at.lower || x > at.upper) bar[l] = 0;
-    }
-    return;
-  }
-  for (int l = 0; l < W; l += N) {
-    const X x = X::load(p + l) + X::load(by.value + l);
-    select((x < X(at.lower)) | (x > X(at.upper)), X(0.0), X::load(bar + l)).store(bar + l);
-  }
-}
-
-/// p[l] += change[l] for the first `count` derivatives by places.
-template <class T>
-JAXMPM_INLINE void add_to_places(double* p, int count, Pack<T, batch<T>> change) {
-  constexpr int W = batch<T>, N = place_lanes<W>;
-  using X = Pack<double, N>;
-  const PlaceChange<T> by(change);
-  if (count < W) {
-    for (int l = 0; l < count; ++l) p[l] += by.value[l];
-    return;
-  }
-  for (int l = 0; l < W; l += N) (X::load(p + l) + X::load(by.value + l)).store(p + l);
+JAXMPM_INLINE Pack<T, batch<T>> drop_held(const double* p, int count, Pack<T, batch<T>> change, const PlaceBounds& at, double* bar) {
+  using X = typename Places<batch<T>>::value_type;
+  const auto free = moved<T>(p, count, change), by = load_places<batch<T>>(bar, count);
+  const auto left =
+      make_places<batch<T>>([&](std::size_t k) { return select((free[k] < X(at.lower)) | (free[k] > X(at.upper)), X(0.0), by[k]); });
+  store_places<batch<T>>(bar, left, count);
+  return from_places<T, batch<T>>(left);
 }
 
 /// Sum of the first `count` lanes.
@@ -200,17 +199,12 @@ struct Stencils {
 
   JAXMPM_INLINE Stencils(const Particles<T, Dim>& p, std::size_t s, int count, const Index<Dim>& origin) {
     constexpr int A = Sch::Shape::A;
-    for (int l = 0; l < W; ++l) base[l] = 0;
+    Pack<int, W> node(0);
     for (int axis = 0; axis < Dim; ++axis) {
-      alignas(64) T offset[W];
-      alignas(64) double X[W];
-      load_places(p.position[std::size_t(axis)].data() + s, count, X);
-      const int o = origin[std::size_t(axis)];
-      alignas(64) double first[W];  // loops that do one thing become vector instructions
-      for (int l = 0; l < W; ++l) first[l] = std::floor(X[l] - Bspline<S>::base_shift);
-      for (int l = 0; l < W; ++l) base[l] = base[l] * A + (int(first[l]) - o);
-      for (int l = 0; l < W; ++l) offset[l] = T(X[l] - first[l]);
-      const P f = P::load(offset);
+      const auto X = load_places<W>(p.position[std::size_t(axis)].data() + s, count);
+      const auto first = make_places<W>([&](std::size_t k) { return floor(X[k] - Bspline<S>::base_shift); });
+      node = node * Pack<int, W>(A) + (from_places<int, W>(first) - Pack<int, W>(origin[std::size_t(axis)]));
+      const P f = from_places<T, W>(make_places<W>([&](std::size_t k) { return X[k] - first[k]; }));
       P weight[S], slope[S], curvature[S];
       Bspline<S>::weights(f, weight);
       if constexpr (with_g) Bspline<S>::slopes(f, slope);
@@ -236,6 +230,7 @@ struct Stencils {
         last.fill(row);
       }
     }
+    node.store(base);
   }
 };
 

@@ -26,19 +26,19 @@ void GridAdjoint<T, Dim>::update(const Blocks<Dim>& blocks, const T* arenas, dou
   const GridConstants<T, Dim> constants = forward_.constants(dt);
   const ContactBlocks<T, Dim>& contact = forward_.contact_blocks();
   const std::size_t own_size = kernels_.own_size;
-  own_.resize(blocks.count() * own_size), block_.resize(blocks.count());
+  own_.resize(blocks.count() * own_size), block_.resize(blocks.count()), near_face_.resize(blocks.count());
   halo_.resize(contact.wall_blocks().size() * halo_nodes);
   parallel_for_host("jaxmpm::grid_adjoint", blocks.count(), [&](std::size_t b) {
     T* own = own_.data() + b * own_size;
     kernels_.sum(blocks, b, arenas, own);
     block_[b].clear(model_, segments());
-    const bool at_wall = contact.wall_slot()[b] >= 0;
-    const std::vector<NearFace> near_face = at_wall ? wall_block_adjoint(blocks, b, constants) : std::vector<NearFace>{};
+    near_face_[b].clear();
+    if (contact.wall_slot()[b] >= 0) wall_block_adjoint(blocks, b, constants);
     if (contact.obstacles(b)) obstacles_adjoint(blocks, b, constants);
     if (model_.body_force || model_.method.damping > 0) constants_adjoint(blocks, b, constants, time);
     const V by_pull = adjoint_.update_nodes(forward_.sums(b), constants, own);
     for (int c = 0; c < Dim; ++c) block_[b].gravity[std::size_t(c)] = double(by_pull[c]);
-    for (const NearFace& node : near_face) {
+    for (const NearFace& node : near_face_[b]) {
       T* by_sums = own + 4 * node.own;
       by_sums[0] += node.direct.mass;  // what is there already came through the mean change of volume
       for (int c = 0; c < Dim; ++c) by_sums[1 + c] = node.direct.momentum[c];
@@ -144,10 +144,9 @@ int GridAdjoint<T, Dim>::halo_node(const Node& node, const Node& first) {
 }
 
 /// Adjoint of update_wall_block: takes the derivatives by the velocities of nodes near faces out of own_ and passes them to the node sums
-/// around the block, in its halo. What does not pass through the velocity, FLIP's own division, is returned.
+/// around the block, in its halo. What does not pass through the velocity, FLIP's own division, goes to near_face_.
 template <class T, int Dim>
-auto GridAdjoint<T, Dim>::wall_block_adjoint(const Blocks<Dim>& blocks, std::size_t b, const GridConstants<T, Dim>& constants)
-    -> std::vector<NearFace> {
+void GridAdjoint<T, Dim>::wall_block_adjoint(const Blocks<Dim>& blocks, std::size_t b, const GridConstants<T, Dim>& constants) {
   const Node first = first_node<Dim>(blocks.index[b]);
   const int* neighbours = blocks.neighbour.data() + b * around;
   const WallSums<T, Dim> raw = forward_.wall_sums(blocks, b, constants);
@@ -169,15 +168,14 @@ auto GridAdjoint<T, Dim>::wall_block_adjoint(const Blocks<Dim>& blocks, std::siz
                     decltype(add_velocity)>
       walls(forward_.walls(), raw, no_obstacles, constants.mass_cut_off, obstacles, add, add_coefficient, add_velocity);
   T* bars = own_.data() + b * kernels_.own_size;
-  std::vector<NearFace> near_face;
+  const T* sums = forward_.sums(b);
   for (int own = 0; own < cells; ++own) {
     const Node node = node_of<Dim>(first, own);
-    if (!forward_.walls().near_face(node)) continue;
+    if (!forward_.walls().near_face(node) || !(sums[4 * own] > 0)) continue;
     V bar;
-    near_face.push_back({own, take_out(forward_.sums(b), constants.mass_cut_off, own, bars, bar)});
+    near_face_[b].push_back({own, take_out(sums, constants.mass_cut_off, own, bars, bar)});
     if (standing<T, Dim>(forward_.walls(), node).reached) walls.velocity(node, bar);
   }
-  return near_face;
 }
 
 /// Takes the derivatives of one node out of own_: those by its velocity, FLIP's Δv = v − p/m included, go to `bar`; those by its own sums
@@ -215,6 +213,7 @@ void GridAdjoint<T, Dim>::collect_wall_block(const Blocks<Dim>& blocks, std::siz
     for (std::size_t d = Dim, rest = std::size_t(m); d-- > 0; rest /= 3) other_first[d] += B * (int(rest % 3) - 1);
     const Sum* halo = halo_.data() + std::size_t(slot) * halo_nodes;
     for (int own = 0; own < cells; ++own) {
+      if (!(sums[4 * own] > 0)) continue;
       const Node node = node_of<Dim>(first, own);
       bool covered = true;
       for (std::size_t d = 0; d < Dim; ++d) covered = covered && node[d] >= other_first[d] - reach && node[d] < other_first[d] + B + reach;

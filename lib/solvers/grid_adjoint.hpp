@@ -57,7 +57,7 @@ class GridAdjoint {
   void constants_adjoint(const Blocks<Dim>& blocks, std::size_t b, const GridConstants<T, Dim>& constants, double time);
   void obstacles_adjoint(const Blocks<Dim>& blocks, std::size_t b, const GridConstants<T, Dim>& constants);
   Sum take_out(const T* sums, T cut_off, int own, T* bars, V& bar) const;
-  std::vector<NearFace> wall_block_adjoint(const Blocks<Dim>& blocks, std::size_t b, const GridConstants<T, Dim>& constants);
+  void wall_block_adjoint(const Blocks<Dim>& blocks, std::size_t b, const GridConstants<T, Dim>& constants);
   void collect_wall_block(const Blocks<Dim>& blocks, std::size_t b, const GridConstants<T, Dim>& constants, double time);
   void obstacle_chain(std::size_t block, int own, const V& start, V& bar, GridBars& bars) const;
   static int halo_node(const Node& node, const Node& first);
@@ -67,7 +67,8 @@ class GridAdjoint {
   const AdjointKernels<T, Dim>& adjoint_;
   const GridUpdate<T, Dim>& forward_;
   Array<T> own_;
-  std::vector<Sum> halo_;  // [wall block][node]: derivatives by NodeSums
+  std::vector<Sum> halo_;                         // [wall block][node]: derivatives by NodeSums
+  std::vector<std::vector<NearFace>> near_face_;  // [block]
   std::vector<GridBars> block_;
   GridBars total_;
 };

@@ -200,7 +200,7 @@ void GridUpdate<T, Dim>::update_wall_block(const Blocks<Dim>& blocks, std::size_
   T* out = grid_.data() + b * kernels_.own_size;
   for (int own = 0; own < cells; ++own) {
     const Node node = node_of<Dim>(first, own);
-    if (!walls_.near_face(node)) continue;
+    if (!walls_.near_face(node) || !(raw.quad(int(b), own)[0] > 0)) continue;
     const NodeStanding at = standing<T, Dim>(walls_, node);
     inside = at.inside;
     NodeContact<T, Dim> contact;

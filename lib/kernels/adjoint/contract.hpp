@@ -2,6 +2,7 @@
 // What the adjoints of both transfers share: a transfer is f(X) = Σ_i [w_i A + Σ_k (d_k)_i B_k + Σ_k (g_k)_i C_k] · N_i with a particle's
 // quads A, B_k, C_k and the nodes' quads N_i (particle to grid: the quads are the particle's and N the derivatives by the node; grid to
 // particle: the other way round), so both need the same ∂f/∂X.
+#include <initializer_list>
 #include <type_traits>
 
 #include "kernels/g2p.hpp"
@@ -16,25 +17,14 @@ JAXMPM_INLINE void contract(const StencilRows<Sch>& rows, const Stencil& t, int 
                             Pack<typename Sch::T, RowShape<typename Sch::T, Sch::S>::N>* sums, Gathered gathered) {
   using T = typename Sch::T;
   using Row = RowShape<T, Sch::S>;
-  constexpr int S = Sch::S, N = Row::N, last = Sch::Dim - 1, first_slope = moments >= 0 ? 1 + Sch::Dim : 1;
+  constexpr int S = Sch::S, N = Row::N, last = Sch::Dim - 1;
   using R = Pack<T, N>;
   const T* z = t.last.row(l);
   static_for<Row::pieces>([&](auto piece) {
     constexpr int c = piece;
-    // What gather() finds, from the nodes summed over all axes but the last: with w, and per axis with d and g.
-    const auto put = [&](const R& w_sum, std::array<R, last> d_sum, std::array<R, last> g_sum) {
-      if constexpr (!std::is_null_pointer_v<Gathered>) {
-        const R w_z = spread_quad<Stencil::w_quad, c, N>(z);
-        gathered[0] += w_sum * w_z;
-        if constexpr (moments >= 0) {
-          for (int k = 0; k < last; ++k) gathered[1 + k] += d_sum[std::size_t(k)] * w_z;
-          gathered[1 + last] += w_sum * spread_quad<Stencil::d_quad, c, N>(z);
-        }
-        if constexpr (slopes >= 0) {
-          for (int k = 0; k < last; ++k) gathered[first_slope + k] += g_sum[std::size_t(k)] * w_z;
-          gathered[first_slope + last] += w_sum * spread_quad<Stencil::g_quad, c, N>(z);
-        }
-      }
+    const auto gather_from = [&](const R& w_sum, std::initializer_list<R> d_sums, std::initializer_list<R> g_sums) {
+      if constexpr (!std::is_null_pointer_v<Gathered>)
+        gather_last_axis<Sch, c, (moments >= 0), (slopes >= 0), Stencil>(z, w_sum, d_sums.begin(), g_sums.begin(), gathered);
     };
     const R w = spread_quad<Stencil::w_quad, c, N>(z), g = spread_quad<Stencil::g_quad, c, N>(z);
     R line(T(0)), line_by_z(T(0));  // what goes with w on all axes but the last, and its derivative by the last
@@ -71,7 +61,7 @@ JAXMPM_INLINE void contract(const StencilRows<Sch>& rows, const Stencil& t, int 
         if constexpr (moments >= 0) by_d += R(t.d[0][a][l]) * node, by_dd += R(t.dd[0][a][l]) * node;
         if constexpr (slopes >= 0) by_gg += R(t.gg[0][a][l]) * node;
       }
-      put(by_w, {by_d}, {by_g});
+      gather_from(by_w, {by_d}, {by_g});
       sums[0] += by_g * line, sums[1] += by_w * line_by_z;
       if constexpr (moments >= 0) sums[0] += by_dd * moment[0], sums[1] += by_d * moment_by_z[0];
       if constexpr (slopes >= 0) sums[0] += by_gg * slope[0], sums[1] += by_g * slope_by_z[0];
@@ -95,7 +85,7 @@ JAXMPM_INLINE void contract(const StencilRows<Sch>& rows, const Stencil& t, int 
         }
         if constexpr (slopes >= 0) gg_w += R(t.gg[0][a][l]) * by_w, g_g += g_x * by_g, w_gg += w_x * by_gg;
       }
-      put(ww, {dw, wd}, {gw, wg});
+      gather_from(ww, {dw, wd}, {gw, wg});
       sums[0] += gw * line, sums[1] += wg * line, sums[2] += ww * line_by_z;
       if constexpr (moments >= 0) {
         sums[0] += ddw * moment[0], sums[1] += dg * moment[0], sums[2] += dw * moment_by_z[0];

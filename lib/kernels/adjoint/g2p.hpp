@@ -27,16 +27,12 @@ JAXMPM_INLINE void update_particles_adjoint(const Particles<typename Sch::T, Sch
   const auto by = [&](int quad, int c) -> P& { return quads[4 * quad + 1 + c]; };
 
   for (int c = 0; c < Dim; ++c) {  // x ← x + Δt v, and the velocity
-    alignas(64) T place[W];
-    alignas(64) double by_x[W];
-    double* bar_x = bar.position[std::size_t(c)].data() + s;
     const P per_cell(step.dt / step.cell_size);
-    drop_held(p.position[std::size_t(c)].data() + s, count, per_cell * component(G::value, c), domain[std::size_t(c)], bar_x);
-    load_places(bar_x, count, by_x);
-    for (int l = 0; l < W; ++l) place[l] = T(by_x[l]);
+    const P by_x = drop_held(p.position[std::size_t(c)].data() + s, count, per_cell * component(G::value, c), domain[std::size_t(c)],
+                             bar.position[std::size_t(c)].data() + s);
     T* by_v = bar.velocity[std::size_t(c)].data() + s;
     const P end = load(by_v, count);
-    by(G::value, c) = per_cell * P::load(place);
+    by(G::value, c) = per_cell * by_x;
     if constexpr (Sch::flip) {
       const P blend(step.flip_fraction), pic = component(G::value, c);
       by(G::value, c) += (P(T(1)) - blend) * end;

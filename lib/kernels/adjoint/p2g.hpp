@@ -127,7 +127,7 @@ void p2g_adjoint_tile(const Particles<typename Sch::T, Sch::Dim>& p, std::size_t
         for (int plane = 0; plane < Sch::planes; ++plane) rows[plane].load(arena + plane * Sch::arena_plane + current * 4);
       }
       R sums[G::padded], place[PlaceSums<Sch>::padded];
-      for (R& x : sums) x = R(T(0));
+      for (int i = G::count; i < G::padded; ++i) sums[i] = R(T(0));
       for (R& x : place) x = R(T(0));
       static_for<Sch::planes>([&](auto plane) {
         constexpr bool full = G::full(plane);
