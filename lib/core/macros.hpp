@@ -11,6 +11,7 @@
 #define JAXMPM_INLINE inline __attribute__((always_inline))
 #define JAXMPM_FUNCTION inline
 #endif
+#define JAXMPM_INLINE_LAMBDA __attribute__((always_inline))  // after the parameters, on the host
 #if defined(__CUDA_ARCH__)
 #define JAXMPM_UNROLL _Pragma("unroll")
 #else

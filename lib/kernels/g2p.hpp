@@ -191,15 +191,14 @@ TileReport g2p_tile(Particles<typename Sch::T, Sch::Dim>& p, std::size_t begin, 
   for (auto& r : rows) r.clear();
   int current = -1;
   TileReport report;
-  for (std::size_t s = begin; s < end; s += W) {
-    const int count = int(end - s < std::size_t(W) ? end - s : std::size_t(W));
+  for_each_batch<T>(begin, end, [&](std::size_t s, int count) JAXMPM_INLINE_LAMBDA {
     const Stencils<Sch, Sch::g2p_moments, Sch::g2p_slopes> t(p, s, count, origin);
     ParticleRows<T, 4 * G::padded> gathered;
     gather_batch<Sch>(t, count, arena, rows, current, gathered);
     Pack<T, W> packs[decltype(gathered)::stride];
     gathered.read(packs);
     update_particles<Sch>(p, s, count, packs, material, step, account, domain, report);
-  }
+  });
   return report;
 }
 

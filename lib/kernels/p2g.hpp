@@ -151,7 +151,6 @@ void p2g_tile(const Particles<typename Sch::T, Sch::Dim>& p, std::size_t begin, 
               const Index<Sch::Dim>& origin, typename Sch::T* arena) {
   using T = typename Sch::T;
   using Q = Coefficients<Sch>;
-  constexpr int W = batch<T>;
   std::memset(arena, 0, sizeof(T) * Sch::arena_size);
   StencilRows<Sch> rows[Sch::planes];
   for (auto& r : rows) r.clear();
@@ -159,8 +158,7 @@ void p2g_tile(const Particles<typename Sch::T, Sch::Dim>& p, std::size_t begin, 
   const auto flush = [&] {
     for (int plane = 0; plane < Sch::planes; ++plane) rows[plane].add_to(arena + plane * Sch::arena_plane + current * 4);
   };
-  for (std::size_t s = begin; s < end; s += W) {
-    const int count = int(end - s < std::size_t(W) ? end - s : std::size_t(W));
+  for_each_batch<T>(begin, end, [&](std::size_t s, int count) JAXMPM_INLINE_LAMBDA {
     const Stencils<Sch, Sch::p2g_moments, Sch::p2g_slopes> t(p, s, count, origin);
     const Q q(p, s, count, material, step);
     for (int l = 0; l < count; ++l) {
@@ -174,7 +172,7 @@ void p2g_tile(const Particles<typename Sch::T, Sch::Dim>& p, std::size_t begin, 
         scatter<Sch, of.rest, of.moments, of.slopes>(rows[plane], t, l, q.rows.row(l));
       });
     }
-  }
+  });
   if (current >= 0) flush();
 }
 

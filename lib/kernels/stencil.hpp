@@ -3,6 +3,7 @@
 #include <array>
 #include <cstring>
 #include <tuple>
+#include <type_traits>
 
 #include "core/pack.hpp"
 #include "core/scalar.hpp"
@@ -22,6 +23,16 @@ struct RowShape {
   static constexpr int N = native_lanes<T> < wanted ? native_lanes<T> : wanted;
   static constexpr int pieces = (4 * S + N - 1) / N;
 };
+
+/// Calls f(s, count) for the batches of particles [begin, end). The number of full ones is a constant, so that what is written for any count
+/// costs them nothing once inlined.
+template <class T, class F>
+JAXMPM_INLINE void for_each_batch(std::size_t begin, std::size_t end, F f) {
+  constexpr int W = batch<T>;
+  std::size_t s = begin;
+  for (; s + W <= end; s += W) f(s, std::integral_constant<int, W>{});
+  if (s < end) f(s, int(end - s));
+}
 
 /// `count` values from p, the last one repeated to fill the pack; never reads past p[count − 1].
 template <class T>

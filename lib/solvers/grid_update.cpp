@@ -76,6 +76,8 @@ WallSums<T, Dim> GridUpdate<T, Dim>::wall_sums(const Blocks<Dim>& blocks, std::s
 
 template <class T, int Dim>
 void GridUpdate<T, Dim>::update(const Blocks<Dim>& blocks, const T* arenas, double dt, double time) {
+  if (keep_sums_) sums_.resize(blocks.count() * kernels_.own_size);
+  found_ = sums_.data();
   update_from(
       blocks, [&](std::size_t b, T* own) { kernels_.sum(blocks, b, arenas, own); }, dt, time);
 }
@@ -83,6 +85,7 @@ void GridUpdate<T, Dim>::update(const Blocks<Dim>& blocks, const T* arenas, doub
 template <class T, int Dim>
 void GridUpdate<T, Dim>::update_again(const Blocks<Dim>& blocks, const T* sums, double dt, double time) {
   const std::size_t size = kernels_.own_size;
+  found_ = sums;
   update_from(
       blocks, [&](std::size_t b, T* own) { std::memcpy(own, sums + b * size, sizeof(T) * size); }, dt, time);
 }
@@ -99,7 +102,6 @@ template <class T, int Dim>
 template <class Sum>
 void GridUpdate<T, Dim>::update_from(const Blocks<Dim>& blocks, const Sum& sum, double dt, double time) {
   const GridConstants<T, Dim> constants = this->constants(dt);
-  if (keep_sums_) sums_.resize(blocks.count() * kernels_.own_size);
   parallel_for_host("jaxmpm::grid", summed_.size(), [&](std::size_t k) {
     sum(summed_[k], grid_.data() + summed_[k] * kernels_.own_size);
     update_block(summed_[k], constants);
@@ -116,7 +118,7 @@ void GridUpdate<T, Dim>::update_block(std::size_t b, const GridConstants<T, Dim>
   T* own = grid_.data() + b * kernels_.own_size;
   const int wall_slot = contact_blocks_.wall_slot()[b];
   if (T* kept = wall_slot >= 0 ? raw_.data() + std::size_t(wall_slot) * kernels_.own_size
-                               : (keep_sums_ ? sums_.data() + b * kernels_.own_size : nullptr))
+                               : (keep_sums_ && found_ == sums_.data() ? sums_.data() + b * kernels_.own_size : nullptr))
     std::memcpy(kept, own, sizeof(T) * kernels_.own_size);
   kernels_.update_nodes(own, constants);
 }

@@ -31,7 +31,7 @@ class GridUpdate {
   /// Sums the arenas and turns them into velocities: afterwards grid() holds {–, v} (and a second plane's {–, Δv}) of every block that is
   /// updated. `time`: that of the step's beginning, s.
   void update(const Blocks<Dim>& blocks, const T* arenas, double dt, double time);
-  /// The same from sums that copy_sums() gave, to the same bits.
+  /// The same from sums that copy_sums() gave, to the same bits. They have to stay where they are until the next update.
   void update_again(const Blocks<Dim>& blocks, const T* sums, double dt, double time);
   const T* grid() const { return grid_.data(); }
 
@@ -41,7 +41,7 @@ class GridUpdate {
   /// Sums {m, p} (and a second plane's {–, impulse}) of a block's own nodes before the update.
   const T* sums(std::size_t b) const {
     const int slot = contact_blocks_.wall_slot()[b];
-    return slot >= 0 ? raw_.data() + std::size_t(slot) * kernels_.own_size : sums_.data() + b * kernels_.own_size;
+    return slot >= 0 ? raw_.data() + std::size_t(slot) * kernels_.own_size : found_ + b * kernels_.own_size;
   }
   /// Sums of all blocks, in their order: sums_size() numbers.
   std::size_t sums_size() const { return grid_.size(); }
@@ -91,6 +91,7 @@ class GridUpdate {
   T mass_cut_off_;
   Array<T> grid_, raw_, sums_;  // [block][own], [wall block][own], [block][own] where kept
   Array<T> force_;              // [block][own node][Dim]: Δt b, m/s, where there is a body force
+  const T* found_ = nullptr;    // what the last update found, away from walls: sums_, or the sums given to it
   bool keep_sums_ = false;
   bool recording_ = false;
   std::vector<std::uint32_t> summed_, at_walls_;  // blocks whose arenas are added up, and those whose wall nodes are updated

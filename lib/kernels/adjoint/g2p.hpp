@@ -98,8 +98,7 @@ void g2p_adjoint_tile(const Particles<typename Sch::T, Sch::Dim>& p, std::size_t
   const auto flush = [&] {
     for (int plane = 0; plane < Sch::planes; ++plane) by_rows[plane].add_to(arena + plane * Sch::arena_plane + current * 4);
   };
-  for (std::size_t s = begin; s < end; s += W) {
-    const int count = int(end - s < std::size_t(W) ? end - s : std::size_t(W));
+  for_each_batch<T>(begin, end, [&](std::size_t s, int count) JAXMPM_INLINE_LAMBDA {
     const Stencils<Sch, Sch::g2p_moments, Sch::g2p_slopes, true> t(p, s, count, origin);
     ParticleRows<T, 4 * G::padded> gathered;
     gather_batch<Sch>(t, count, velocities, rows, loaded, gathered);
@@ -131,7 +130,7 @@ void g2p_adjoint_tile(const Particles<typename Sch::T, Sch::Dim>& p, std::size_t
       by_place.put(l, place);
     }
     by_place.add_to(bar, s, count);
-  }
+  });
   if (current >= 0) flush();
 }
 

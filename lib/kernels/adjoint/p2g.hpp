@@ -115,8 +115,7 @@ void p2g_adjoint_tile(const Particles<typename Sch::T, Sch::Dim>& p, std::size_t
   StencilRows<Sch> rows[Sch::planes];
   for (auto& r : rows) r.clear();
   int current = -1;
-  for (std::size_t s = begin; s < end; s += W) {
-    const int count = int(end - s < std::size_t(W) ? end - s : std::size_t(W));
+  for_each_batch<T>(begin, end, [&](std::size_t s, int count) JAXMPM_INLINE_LAMBDA {
     const Stencils<Sch, G::with_d, G::with_g, true> t(p, s, count, origin);
     const Q q(p, s, count, material, step);
     ParticleRows<T, 4 * G::padded> gathered;
@@ -143,7 +142,7 @@ void p2g_adjoint_tile(const Particles<typename Sch::T, Sch::Dim>& p, std::size_t
     gathered.read(packs);
     by_place.add_to(bar, s, count);
     coefficients_adjoint<Sch>(p, s, count, packs, material, material_adjoint, step, bar, report);
-  }
+  });
 }
 
 }  // namespace jaxmpm
