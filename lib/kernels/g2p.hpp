@@ -67,7 +67,7 @@ JAXMPM_INLINE void gather(const StencilRows<Sch>& rows, const Stencil& t, int l,
   constexpr int S = Sch::S, N = Row::N;
   using R = Pack<T, N>;
   const T* z = t.last.row(l);
-  static_for<Row::pieces>([&](auto piece) {
+  static_for<Row::pieces>([&](auto piece) JAXMPM_INLINE_LAMBDA {
     constexpr int c = piece;
     R sum(T(0)), d[2] = {R(T(0)), R(T(0))}, g[2] = {R(T(0)), R(T(0))};  // Σ w, and with d or g on one axis but the last
     for (int a = 0; a < S; ++a) {

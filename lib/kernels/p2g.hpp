@@ -56,7 +56,7 @@ JAXMPM_INLINE void scatter(StencilRows<Sch>& rows, const Stencil& t, int l, cons
   constexpr int S = Sch::S, N = Row::N, last = Sch::Dim - 1;
   using R = Pack<T, N>;
   const T* z = t.last.row(l);
-  static_for<Row::pieces>([&](auto piece) {
+  static_for<Row::pieces>([&](auto piece) JAXMPM_INLINE_LAMBDA {
     constexpr int c = piece;
     const R w = spread_quad<Stencil::w_quad, c, N>(z);
     R line(T(0));  // what goes with w on all axes but the last
@@ -64,7 +64,7 @@ JAXMPM_INLINE void scatter(StencilRows<Sch>& rows, const Stencil& t, int l, cons
     if constexpr (moments >= 0) line += spread_quad<Stencil::d_quad, c, N>(z) * repeat_quad<moments + last, N>(coefficients);
     if constexpr (slopes >= 0) line += spread_quad<Stencil::g_quad, c, N>(z) * repeat_quad<slopes + last, N>(coefficients);
     R moment[2], slope[2];  // what goes with d or g on one of the other axes
-    static_for<Sch::Dim - 1>([&](auto axis) {
+    static_for<Sch::Dim - 1>([&](auto axis) JAXMPM_INLINE_LAMBDA {
       constexpr int k = axis;
       if constexpr (moments >= 0) moment[k] = w * repeat_quad<moments + k, N>(coefficients);
       if constexpr (slopes >= 0) slope[k] = w * repeat_quad<slopes + k, N>(coefficients);
@@ -167,7 +167,7 @@ void p2g_tile(const Particles<typename Sch::T, Sch::Dim>& p, std::size_t begin, 
         for (auto& r : rows) r.clear();
         current = t.base[l];
       }
-      static_for<Sch::planes>([&](auto plane) {
+      static_for<Sch::planes>([&](auto plane) JAXMPM_INLINE_LAMBDA {
         constexpr PlaneQuads of = Q::in_plane(plane);
         scatter<Sch, of.rest, of.moments, of.slopes>(rows[plane], t, l, q.rows.row(l));
       });

@@ -219,6 +219,7 @@ void GridAdjoint<T, Dim>::collect_wall_block(const Blocks<Dim>& blocks, std::siz
       for (std::size_t d = 0; d < Dim; ++d) covered = covered && node[d] >= other_first[d] - reach && node[d] < other_first[d] + B + reach;
       if (!covered) continue;
       const Sum& by = halo[halo_node(node, other_first)];
+      if (by.nothing()) continue;
       const V pull = forward_.pull(constants, b, own);
       T* by_sums = bars + 4 * own;
       by_sums[0] += by.mass;

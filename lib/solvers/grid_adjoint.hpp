@@ -43,6 +43,11 @@ class GridAdjoint {
   struct Sum {
     T mass;
     V momentum;
+    bool nothing() const {
+      bool none = mass == T(0);
+      for (int c = 0; c < Dim; ++c) none = none && momentum[c] == T(0);
+      return none;
+    }
   };
 
   std::size_t segments() const { return forward_.contact_blocks().table().coefficient.size(); }

@@ -20,7 +20,7 @@ JAXMPM_INLINE void contract(const StencilRows<Sch>& rows, const Stencil& t, int 
   constexpr int S = Sch::S, N = Row::N, last = Sch::Dim - 1;
   using R = Pack<T, N>;
   const T* z = t.last.row(l);
-  static_for<Row::pieces>([&](auto piece) {
+  static_for<Row::pieces>([&](auto piece) JAXMPM_INLINE_LAMBDA {
     constexpr int c = piece;
     const auto gather_from = [&](const R& w_sum, std::initializer_list<R> d_sums, std::initializer_list<R> g_sums) {
       if constexpr (!std::is_null_pointer_v<Gathered>)
@@ -41,7 +41,7 @@ JAXMPM_INLINE void contract(const StencilRows<Sch>& rows, const Stencil& t, int 
       line += g * C, line_by_z += spread_quad<Stencil::gg_quad, c, N>(z) * C;
     }
     R moment[2], moment_by_z[2], slope[2], slope_by_z[2];  // what goes with d or g on one of the other axes
-    static_for<Sch::Dim - 1>([&](auto axis) {
+    static_for<Sch::Dim - 1>([&](auto axis) JAXMPM_INLINE_LAMBDA {
       constexpr int k = axis;
       if constexpr (moments >= 0) {
         const R B = repeat_quad<moments + k, N>(quads);

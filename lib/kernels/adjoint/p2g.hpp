@@ -128,7 +128,7 @@ void p2g_adjoint_tile(const Particles<typename Sch::T, Sch::Dim>& p, std::size_t
       R sums[G::padded], place[PlaceSums<Sch>::padded];
       for (int i = G::count; i < G::padded; ++i) sums[i] = R(T(0));
       for (R& x : place) x = R(T(0));
-      static_for<Sch::planes>([&](auto plane) {
+      static_for<Sch::planes>([&](auto plane) JAXMPM_INLINE_LAMBDA {
         constexpr bool full = G::full(plane);
         constexpr PlaneQuads of = Q::in_plane(plane);
         static_assert((full && G::with_d) == (of.moments >= 0) && (full && G::with_g) == (of.slopes >= 0));
