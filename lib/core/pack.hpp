@@ -16,9 +16,9 @@ inline constexpr int native_bytes = 32;
 #else
 inline constexpr int native_bytes = 16;
 #endif
-/// Lanes of T in the widest vector register that this build may use.
+/// Lanes of T in the widest vector register that this build may use, but four at least: a node's values take so many.
 template <class T>
-inline constexpr int native_lanes = native_bytes / int(sizeof(T));
+inline constexpr int native_lanes = native_bytes / int(sizeof(T)) < 4 ? 4 : native_bytes / int(sizeof(T));
 
 namespace pack_detail {
 // Written out, as compilers lose the attribute where its size depends on a template parameter.
@@ -138,27 +138,55 @@ namespace pack_detail {
   else if constexpr (N == 8) return Pack<T, N>(__builtin_shufflevector(a.v, b.v, JAXMPM_LANES_8(lane, 0))); \
   else return Pack<T, N>(__builtin_shufflevector(a.v, b.v, JAXMPM_LANES_16(lane, 0)));
 #define JAXMPM_INTERLEAVED(i) (Half * (N / 2) + (i) / 2 + (i) % 2 * N)
-#define JAXMPM_REPEATED(i) (Offset + (i) % 4)
-#define JAXMPM_SPREAD(i) (Offset + (i) / 4)
+#define JAXMPM_REPEATED(i) (Offset + (i) % V)
+#define JAXMPM_SPREAD(i) (Offset + (i) / V)
 #define JAXMPM_FOLLOWING(i) (Offset + (i))
+#define JAXMPM_EVERY_OTHER(i) (Offset + (i) / G * (2 * G) + (i) % G)
+#define JAXMPM_FIRSTS(i) ((i)*4)
+#define JAXMPM_MIDDLES(i) ((i) / 2 * 4 + (i) % 2 + 1)
+#define JAXMPM_QUADS(i) ((i) % 4 == 0 ? N + (Offset + (i)) / 4 : (i) % 4 == 3 ? 2 * N - 1 : (Offset + (i)) / 4 * 2 + (i) % 4 - 1)
 /// {a[h], b[h], a[h+1], b[h+1], …} with h = 0 (Half 0) or N/2 (Half 1).
 template <int Half, class T, int N>
 JAXMPM_INLINE Pack<T, N> interleave(Pack<T, N> a, Pack<T, N> b) {
   JAXMPM_SHUFFLE(a, b, JAXMPM_INTERLEAVED)
 }
-template <int Offset, class T, int N>
-JAXMPM_INLINE Pack<T, N> repeat_quad(Pack<T, N> a) {
+/// V lanes from Offset on, again and again; each lane from Offset on V times.
+template <int V, int Offset, class T, int N>
+JAXMPM_INLINE Pack<T, N> repeat(Pack<T, N> a) {
   JAXMPM_SHUFFLE(a, a, JAXMPM_REPEATED)
 }
-template <int Offset, class T, int N>
-JAXMPM_INLINE Pack<T, N> spread_quad(Pack<T, N> a) {
+template <int V, int Offset, class T, int N>
+JAXMPM_INLINE Pack<T, N> spread(Pack<T, N> a) {
   JAXMPM_SHUFFLE(a, a, JAXMPM_SPREAD)
+}
+/// Every other group of G lanes of two packs, from the one at Offset on.
+template <int G, int Offset, class T, int N>
+JAXMPM_INLINE Pack<T, N> every_other(Pack<T, N> a, Pack<T, N> b) {
+  JAXMPM_SHUFFLE(a, b, JAXMPM_EVERY_OTHER)
+}
+/// Of each quad of two packs the first, or the two in the middle.
+template <int N, class T, int M>
+JAXMPM_INLINE Pack<T, N> firsts(Pack<T, M> a, Pack<T, M> b) {
+  JAXMPM_SHUFFLE(a, b, JAXMPM_FIRSTS)
+}
+template <class T, int N>
+JAXMPM_INLINE Pack<T, N> middles(Pack<T, N> a, Pack<T, N> b) {
+  JAXMPM_SHUFFLE(a, b, JAXMPM_MIDDLES)
+}
+/// Lanes from Offset on of quads with those firsts and middles; the last of a quad is the last of `firsts`.
+template <int Offset, class T, int N>
+JAXMPM_INLINE Pack<T, N> quads(Pack<T, N> middles, Pack<T, N> firsts) {
+  JAXMPM_SHUFFLE(middles, firsts, JAXMPM_QUADS)
 }
 /// N lanes of a pack from Offset on; of two packs, as if the second followed the first.
 template <int Offset, int N, class T, int M>
 JAXMPM_INLINE Pack<T, N> part(Pack<T, M> a, Pack<T, M> b) {
   JAXMPM_SHUFFLE(a, b, JAXMPM_FOLLOWING)
 }
+#undef JAXMPM_QUADS
+#undef JAXMPM_MIDDLES
+#undef JAXMPM_FIRSTS
+#undef JAXMPM_EVERY_OTHER
 #undef JAXMPM_FOLLOWING
 #undef JAXMPM_SPREAD
 #undef JAXMPM_REPEATED
@@ -219,20 +247,53 @@ JAXMPM_INLINE void transpose(Pack<T, N>* r) {
   }
 }
 
-/// Quad K of a row in memory ({r[4K] … r[4K+3]}), repeated over all lanes.
-template <int K, int N, class T>
-JAXMPM_INLINE Pack<T, N> repeat_quad(const T* row) {
-  const auto whole = Pack<T, N>::load(row + 4 * K / N * N);
-  if constexpr (N == 4) return whole;
-  else return pack_detail::repeat_quad<4 * K % N>(whole);
+/// Group K of V values of a row in memory ({r[VK] … r[VK+V−1]}), repeated over all lanes.
+template <int V, int K, int N, class T>
+JAXMPM_INLINE Pack<T, N> repeat(const T* row) {
+  const auto whole = Pack<T, N>::load(row + V * K / N * N);
+  if constexpr (N == V) return whole;
+  else return pack_detail::repeat<V, V * K % N>(whole);
 }
 
-/// Part C of quad K of a row with every value four times: {r[4K+C·N/4] ×4, r[4K+C·N/4+1] ×4, …}.
-template <int K, int C, int N, class T>
-JAXMPM_INLINE Pack<T, N> spread_quad(const T* row) {
-  constexpr int first = 4 * K + C * (N / 4);
-  if constexpr (N == 4) return Pack<T, N>(row[first]);
-  else return pack_detail::spread_quad<first % N>(Pack<T, N>::load(row + first / N * N));
+/// Part C of quad K of a row with every value V times: {r[4K+C·N/V] ×V, r[4K+C·N/V+1] ×V, …}.
+template <int V, int K, int C, int N, class T>
+JAXMPM_INLINE Pack<T, N> spread(const T* row) {
+  constexpr int first = 4 * K + C * (N / V);
+  if constexpr (N == V) return Pack<T, N>(row[first]);
+  else return pack_detail::spread<V, first % N>(Pack<T, N>::load(row + first / N * N));
+}
+
+/// Adds groups of G lanes to the groups beside them, and puts what they give in `a` before what they give in `b`.
+template <int G, class T, int N>
+JAXMPM_INLINE Pack<T, N> fold(Pack<T, N> a, Pack<T, N> b) {
+  return pack_detail::every_other<G, 0>(a, b) + pack_detail::every_other<G, G>(a, b);
+}
+
+/// Adds up the groups of V lanes in each of N/V packs and returns the sums side by side.
+template <int V, class T, int N>
+JAXMPM_INLINE Pack<T, N> sum_groups(const Pack<T, N>* x) {
+  static_assert(N == V || N == 2 * V || N == 4 * V);
+  if constexpr (N == V) return x[0];
+  else if constexpr (N == 2 * V) return fold<V>(x[0], x[1]);
+  else return fold<V>(fold<2 * V>(x[0], x[1]), fold<2 * V>(x[2], x[3]));
+}
+
+/// Of N/2 quads in memory the two values in the middle, and the first.
+template <int N, class T>
+JAXMPM_INLINE Pack<T, N> load_middles(const T* at) {
+  return pack_detail::middles(Pack<T, N>::load(at), Pack<T, N>::load(at + N));
+}
+template <int N, class T>
+JAXMPM_INLINE Pack<T, N / 2> load_firsts(const T* at) {
+  return pack_detail::firsts<N / 2>(Pack<T, N>::load(at), Pack<T, N>::load(at + N));
+}
+/// Adds to those values.
+template <class T, int N, int Half>
+JAXMPM_INLINE void add_to_quads(T* at, Pack<T, N> middles, Pack<T, Half> firsts) {
+  static_assert(2 * Half == N);
+  const Pack<T, N> first = join(firsts, Pack<T, Half>(T(0)));
+  (Pack<T, N>::load(at) + pack_detail::quads<0>(middles, first)).store(at);
+  (Pack<T, N>::load(at + N) + pack_detail::quads<N>(middles, first)).store(at + N);
 }
 
 }  // namespace jaxmpm

@@ -5,65 +5,42 @@
 
 namespace jaxmpm {
 
-/// {a0+a2, a1+a3, b0+b2, b1+b3} of quads. (Not a lambda in sum_quads: nvcc takes those for device code.)
-template <class T>
-JAXMPM_INLINE Pack<T, 16> add_halves(const Pack<T, 16>& a, const Pack<T, 16>& b) {
-  return Pack<T, 16>(__builtin_shufflevector(a.v, b.v, 0, 1, 2, 3, 4, 5, 6, 7, 16, 17, 18, 19, 20, 21, 22, 23)) +
-         Pack<T, 16>(__builtin_shufflevector(a.v, b.v, 8, 9, 10, 11, 12, 13, 14, 15, 24, 25, 26, 27, 28, 29, 30, 31));
-}
-
-/// Adds up the nodes of a row: per quad of lanes. Takes N/4 packs and returns one that holds their sums side by side.
-template <class T, int N>
-JAXMPM_INLINE Pack<T, N> sum_quads(const Pack<T, N>* x) {
-  if constexpr (N == 4) {
-    return x[0];
-  } else if constexpr (N == 8) {
-    return Pack<T, N>(__builtin_shufflevector(x[0].v, x[1].v, 0, 1, 2, 3, 8, 9, 10, 11)) +
-           Pack<T, N>(__builtin_shufflevector(x[0].v, x[1].v, 4, 5, 6, 7, 12, 13, 14, 15));
-  } else {
-    static_assert(N == 16);
-    const Pack<T, N> ab = add_halves(x[0], x[1]), cd = add_halves(x[2], x[3]);
-    return Pack<T, N>(__builtin_shufflevector(ab.v, cd.v, 0, 1, 2, 3, 8, 9, 10, 11, 16, 17, 18, 19, 24, 25, 26, 27)) +
-           Pack<T, N>(__builtin_shufflevector(ab.v, cd.v, 4, 5, 6, 7, 12, 13, 14, 15, 20, 21, 22, 23, 28, 29, 30, 31));
-  }
-}
-
-/// Where the gathered quads of a particle lie in its row.
+/// Where what a particle gathers lies in its row: groups of V values, as a node gives them.
 template <class Sch>
-struct GatheredQuads {
-  static constexpr int value = 0, moments = 1, slopes = Sch::g2p_moments ? 1 + Sch::Dim : 1;
+struct GatheredGroups {
+  static constexpr int V = Sch::V, value = 0, moments = 1, slopes = Sch::g2p_moments ? 1 + Sch::Dim : 1;
   static constexpr int change = 1 + Sch::Dim * (int(Sch::g2p_moments) + int(Sch::g2p_slopes));  // the second plane: FLIP's Σ φ Δv
   static constexpr int count = change + Sch::planes - 1;
-  static constexpr int dilation = 4 * (Sch::dilation_plane == 0 ? value : change) + Sch::dilation_lane;  // where the mean of θ is
-  static constexpr int per_store = RowShape<typename Sch::T, Sch::S>::N / 4;
+  static constexpr int dilation = V * (Sch::dilation_plane == 0 ? value : change) + Sch::dilation_lane;  // where the mean of θ is
+  static constexpr int per_store = RowShape<typename Sch::T, Sch::S, V>::N / V;
   static constexpr int padded = (count + per_store - 1) / per_store * per_store;
+  static constexpr int component(int group, int c) { return V * group + Sch::vector_at + c; }
 };
 
 /// The end of a gather: part c of the rows along the last axis (factors z), whose nodes have been summed over the other axes with w (`sum`)
 /// and with d or g on each of them in turn. Adds to the sums of the parts before; the first one sets them.
 template <class Sch, int c, bool moments, bool slopes, class Stencil, class R>
 JAXMPM_INLINE void gather_last_axis(const typename Sch::T* z, const R& sum, const R* d, const R* g, R* sums) {
-  constexpr int N = R::lanes, last = Sch::Dim - 1, first_moment = 1, first_slope = moments ? 1 + Sch::Dim : 1;
-  const auto put = [&](int quad, R value) { sums[quad] = c == 0 ? value : sums[quad] + value; };
-  const R w = spread_quad<Stencil::w_quad, c, N>(z);
+  constexpr int N = R::lanes, V = Sch::V, last = Sch::Dim - 1, first_moment = 1, first_slope = moments ? 1 + Sch::Dim : 1;
+  const auto put = [&](int group, R value) { sums[group] = c == 0 ? value : sums[group] + value; };
+  const R w = spread<V, Stencil::w_quad, c, N>(z);
   put(0, sum * w);
   if constexpr (moments) {
     for (int k = 0; k < last; ++k) put(first_moment + k, d[k] * w);
-    put(first_moment + last, sum * spread_quad<Stencil::d_quad, c, N>(z));
+    put(first_moment + last, sum * spread<V, Stencil::d_quad, c, N>(z));
   }
   if constexpr (slopes) {
     for (int k = 0; k < last; ++k) put(first_slope + k, g[k] * w);
-    put(first_slope + last, sum * spread_quad<Stencil::g_quad, c, N>(z));
+    put(first_slope + last, sum * spread<V, Stencil::g_quad, c, N>(z));
   }
 }
 
-/// Σ over the stencil of factor × node, for one particle: quads of sums (the value, then Dim with moments, then Dim with slopes), one pack
-/// per (quad, lane of the row); still to be added along the row.
+/// Σ over the stencil of factor × node, for one particle: groups of sums (the value, then Dim with moments, then Dim with slopes), one pack
+/// per (group, lane of the row); still to be added along the row.
 template <class Sch, bool moments, bool slopes, class Stencil>
-JAXMPM_INLINE void gather(const StencilRows<Sch>& rows, const Stencil& t, int l,
-                          Pack<typename Sch::T, RowShape<typename Sch::T, Sch::S>::N>* sums) {
+JAXMPM_INLINE void gather(const StencilRows<Sch, false>& rows, const Stencil& t, int l, typename StencilRows<Sch, false>::R* sums) {
   using T = typename Sch::T;
-  using Row = RowShape<T, Sch::S>;
+  using Row = typename StencilRows<Sch, false>::Row;
   constexpr int S = Sch::S, N = Row::N;
   using R = Pack<T, N>;
   const T* z = t.last.row(l);
@@ -94,14 +71,13 @@ JAXMPM_INLINE void gather(const StencilRows<Sch>& rows, const Stencil& t, int l,
   });
 }
 
-/// Gathers for `count` particles (those of the stencils t) what their quads need, in the order of GatheredQuads; lanes behind them repeat
-/// the last. `rows` holds the stencil of base node `loaded` from particle to particle, and from batch to batch.
+/// Gathers for `count` particles (those of the stencils t), in the order of GatheredGroups; lanes behind them repeat the last. `rows` holds the stencil of base node `loaded` from particle to particle, and from batch to batch.
 template <class Sch, class Stencil>
-JAXMPM_INLINE void gather_batch(const Stencil& t, int count, const typename Sch::T* arena, StencilRows<Sch>* rows, int& loaded,
-                                ParticleRows<typename Sch::T, 4 * GatheredQuads<Sch>::padded>& gathered) {
+JAXMPM_INLINE void gather_batch(const Stencil& t, int count, const typename Sch::T* arena, StencilRows<Sch, false>* rows, int& loaded,
+                                ParticleRows<typename Sch::T, Sch::V * GatheredGroups<Sch>::padded>& gathered) {
   using T = typename Sch::T;
-  using G = GatheredQuads<Sch>;
-  using R = typename StencilRows<Sch>::R;
+  using G = GatheredGroups<Sch>;
+  using R = typename StencilRows<Sch, false>::R;
   for (int l = 0; l < count; ++l) {
     if (t.base[l] != loaded) {
       loaded = t.base[l];
@@ -111,9 +87,9 @@ JAXMPM_INLINE void gather_batch(const Stencil& t, int count, const typename Sch:
     for (int i = G::count; i < G::padded; ++i) sums[i] = R(T(0));
     gather<Sch, Sch::g2p_moments, Sch::g2p_slopes>(rows[0], t, l, sums);
     if constexpr (Sch::planes == 2) gather<Sch, false, false>(rows[1], t, l, sums + G::change);
-    for (int i = 0; i < G::padded; i += G::per_store) sum_quads<T, R::lanes>(sums + i).store(gathered.row(l) + 4 * i);
+    for (int i = 0; i < G::padded; i += G::per_store) sum_groups<G::V>(sums + i).store(gathered.row(l) + G::V * i);
   }
-  for (int l = count; l < batch<T>; ++l) std::memcpy(gathered.row(l), gathered.row(count - 1), sizeof(T) * std::size_t(4 * G::padded));
+  for (int l = count; l < batch<T>; ++l) std::memcpy(gathered.row(l), gathered.row(count - 1), sizeof(T) * std::size_t(G::V * G::padded));
 }
 
 /// tr H += part (θ̄ − θ): takes part of the last step's change of volume θ back and puts the mean of the nodes around in its place. Returns
@@ -138,10 +114,10 @@ JAXMPM_INLINE void update_particles(Particles<typename Sch::T, Sch::Dim>& p, std
                                     const MaterialKernel<typename Sch::T, Sch::Dim>& material, const StepConstants<typename Sch::T>& step,
                                     bool account, const DomainBounds<Sch::Dim>& domain, TileReport& report) {
   using T = typename Sch::T;
-  using G = GatheredQuads<Sch>;
+  using G = GatheredGroups<Sch>;
   constexpr int W = batch<T>, Dim = Sch::Dim;
   using P = Pack<T, W>;
-  const auto component = [&](int quad, int c) { return gathered[4 * quad + 1 + c]; };
+  const auto component = [&](int group, int c) { return gathered[G::component(group, c)]; };
   P speed2(T(0)), moved(T(0));
   for (int c = 0; c < Dim; ++c) {
     const P pic = component(G::value, c);
@@ -185,15 +161,15 @@ TileReport g2p_tile(Particles<typename Sch::T, Sch::Dim>& p, std::size_t begin, 
                     const MaterialKernel<typename Sch::T, Sch::Dim>& material, const StepConstants<typename Sch::T>& step, bool account,
                     const Index<Sch::Dim>& origin, const DomainBounds<Sch::Dim>& domain, const typename Sch::T* arena) {
   using T = typename Sch::T;
-  using G = GatheredQuads<Sch>;
+  using G = GatheredGroups<Sch>;
   constexpr int W = batch<T>;
-  StencilRows<Sch> rows[Sch::planes];
+  StencilRows<Sch, false> rows[Sch::planes];
   for (auto& r : rows) r.clear();
   int current = -1;
   TileReport report;
   for_each_batch<T>(begin, end, [&](std::size_t s, int count) JAXMPM_INLINE_LAMBDA {
     const Stencils<Sch, Sch::g2p_moments, Sch::g2p_slopes> t(p, s, count, origin);
-    ParticleRows<T, 4 * G::padded> gathered;
+    ParticleRows<T, G::V * G::padded> gathered;
     gather_batch<Sch>(t, count, arena, rows, current, gathered);
     Pack<T, W> packs[decltype(gathered)::stride];
     gathered.read(packs);

@@ -1,18 +1,19 @@
 #pragma once
 // What a transfer scheme needs, as compile-time facts, so that a kernel does nothing else.
 #include "basis/bspline.hpp"
+#include "core/pack.hpp"
 #include "deck/deck.hpp"
 #include "state/blocks.hpp"
 
 namespace jaxmpm {
 
 /// S: spline nodes; MLS: gradient form D⁻¹φ(x_i − x_p) instead of ∇φ; Dilation: a node has room for Σ m θ, then the mean of θ, the
-/// particles' change of volume in the last step, where it is averaged (/method/volume_averaging). In 2D that costs nothing.
+/// particles' change of volume in the last step, where it is averaged (/method/volume_averaging).
 ///
 /// Along one axis a particle has three kinds of factor for a node: the weight w, the moment d = w (X_i − X_p) and the slope g = dφ/dX. A
 /// tensor-product quantity along axis k takes d or g on axis k and w on the others. Affine velocities go with d, forces and gradients with
 /// g (spline) or d (mls).
-template <class T_, int Dim_, int S_, deck::Transfer kTransfer, bool kMls, bool kDilation = Dim_ == 2>
+template <class T_, int Dim_, int S_, deck::Transfer kTransfer, bool kMls, bool kDilation = false>
 struct Scheme {
   using T = T_;
   static constexpr int Dim = Dim_, S = S_;
@@ -33,6 +34,10 @@ struct Scheme {
   /// the first quad in 2D and the first place of the second in 3D.
   static constexpr int planes = flip || (dilation && Dim == 3) ? 2 : 1;
   static constexpr int dilation_plane = Dim == 2 ? 0 : 1, dilation_lane = Dim == 2 ? 3 : 0;
+  /// Values of a node in the loops over rows: the whole quad, or in 2D momenta (velocities) alone, with masses apart, where that takes fewer
+  /// packs. `vector_at`: where the momentum begins among them.
+  static constexpr bool row_in_one_pack = native_lanes<T> >= 4 * S;
+  static constexpr int V = Dim == 2 && !dilation && !row_in_one_pack ? 2 : 4, vector_at = V == 2 ? 0 : 1;
   using Shape = BlockShape<Dim, S>;
   static constexpr int arena_plane = (Shape::arena_nodes + 4) * 4;  // rows are read a full vector at a time: room behind the last
   static constexpr int arena_size = arena_plane * planes;

@@ -16,12 +16,12 @@ namespace jaxmpm {
 template <class T>
 inline constexpr int batch = native_lanes<T>;
 
-/// Lanes of one piece of a row, and pieces per row. A row has S nodes of four values.
-template <class T, int S>
+/// Lanes of one piece of a row, and pieces per row. A row has S nodes of V values.
+template <class T, int S, int V>
 struct RowShape {
-  static constexpr int wanted = S == 2 ? 8 : 16;
+  static constexpr int wanted = V * (S == 2 ? 2 : 4);
   static constexpr int N = native_lanes<T> < wanted ? native_lanes<T> : wanted;
-  static constexpr int pieces = (4 * S + N - 1) / N;
+  static constexpr int pieces = (V * S + N - 1) / N;
 };
 
 /// Calls f(s, count) for the batches of particles [begin, end). The number of full ones is a constant, so that what is written for any count

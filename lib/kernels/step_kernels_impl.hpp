@@ -58,9 +58,7 @@ auto with_scheme(const deck::Method& method, F&& f) {
 
 template <class T, int Dim, int S, class F>
 auto with_scheme(const deck::Method& method, F&& f) {
-  if constexpr (Dim == 3)
-    if (!(method.volume_averaging > 0)) return with_scheme<T, Dim, S, false>(method, f);
-  return with_scheme<T, Dim, S, true>(method, f);
+  return method.volume_averaging > 0 ? with_scheme<T, Dim, S, true>(method, f) : with_scheme<T, Dim, S, false>(method, f);
 }
 
 template <class T, int Dim, int S>

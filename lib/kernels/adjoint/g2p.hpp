@@ -11,20 +11,20 @@ struct AdjointReport {
 };
 
 /// Adjoint of update_particles for W particles: derivatives by their end values in `bar` become those by their start values as far as they
-/// do not pass the grid, and those by the gathered quads are written to `quads`, in the order of GatheredQuads.
+/// do not pass the grid, and those by what was gathered are written to `bars`, in the order of GatheredGroups.
 template <class Sch>
 JAXMPM_INLINE void update_particles_adjoint(const Particles<typename Sch::T, Sch::Dim>& p, std::size_t s, int count,
                                             const Pack<typename Sch::T, batch<typename Sch::T>>* gathered,
                                             const MaterialAdjoint<typename Sch::T, Sch::Dim>& material,
                                             const StepConstants<typename Sch::T>& step, const DomainBounds<Sch::Dim>& domain,
-                                            Particles<typename Sch::T, Sch::Dim>& bar, Pack<typename Sch::T, batch<typename Sch::T>>* quads,
+                                            Particles<typename Sch::T, Sch::Dim>& bar, Pack<typename Sch::T, batch<typename Sch::T>>* bars,
                                             AdjointReport& report) {
   using T = typename Sch::T;
-  using G = GatheredQuads<Sch>;
+  using G = GatheredGroups<Sch>;
   constexpr int W = batch<T>, Dim = Sch::Dim;
   using P = Pack<T, W>;
-  const auto component = [&](int quad, int c) { return gathered[4 * quad + 1 + c]; };
-  const auto by = [&](int quad, int c) -> P& { return quads[4 * quad + 1 + c]; };
+  const auto component = [&](int group, int c) { return gathered[G::component(group, c)]; };
+  const auto by = [&](int group, int c) -> P& { return bars[G::component(group, c)]; };
 
   for (int c = 0; c < Dim; ++c) {  // x ← x + Δt v, and the velocity
     const P per_cell(step.dt / step.cell_size);
@@ -72,7 +72,7 @@ JAXMPM_INLINE void update_particles_adjoint(const Particles<typename Sch::T, Sch
       P by_trace(T(0));
       for (int c = 0; c < Dim; ++c) by_trace += P::load(by_H[c * (Dim + 1)]);
       const P by_mean = P(step.volume_averaging / T(Dim)) * by_trace;
-      quads[G::dilation] = by_mean;
+      bars[G::dilation] = by_mean;
       store(bar.dilation[0].data() + s, -by_mean, count);
     }
   for (int c = 0; c < Dim; ++c)
@@ -86,12 +86,13 @@ void g2p_adjoint_tile(const Particles<typename Sch::T, Sch::Dim>& p, std::size_t
                       const Index<Sch::Dim>& origin, const DomainBounds<Sch::Dim>& domain, const typename Sch::T* velocities,
                       typename Sch::T* arena, Particles<typename Sch::T, Sch::Dim>& bar, AdjointReport& report) {
   using T = typename Sch::T;
-  using G = GatheredQuads<Sch>;
-  using R = typename StencilRows<Sch>::R;
+  using G = GatheredGroups<Sch>;
+  using Rows = StencilRows<Sch, false>;
+  using R = typename Rows::R;
   constexpr int W = batch<T>;
   constexpr int moments = Sch::g2p_moments ? G::moments : -1, slopes = Sch::g2p_slopes ? G::slopes : -1;
   std::memset(arena, 0, sizeof(T) * Sch::arena_size);
-  StencilRows<Sch> rows[Sch::planes], by_rows[Sch::planes];
+  Rows rows[Sch::planes], by_rows[Sch::planes];
   for (auto& r : rows) r.clear();
   for (auto& r : by_rows) r.clear();
   int current = -1, loaded = -1;  // base nodes of by_rows and of rows
@@ -100,13 +101,13 @@ void g2p_adjoint_tile(const Particles<typename Sch::T, Sch::Dim>& p, std::size_t
   };
   for_each_batch<T>(begin, end, [&](std::size_t s, int count) JAXMPM_INLINE_LAMBDA {
     const Stencils<Sch, Sch::g2p_moments, Sch::g2p_slopes, true> t(p, s, count, origin);
-    ParticleRows<T, 4 * G::padded> gathered;
+    ParticleRows<T, G::V * G::padded> gathered;
     gather_batch<Sch>(t, count, velocities, rows, loaded, gathered);
-    Pack<T, W> packs[decltype(gathered)::stride], quads[decltype(gathered)::stride];
+    Pack<T, W> packs[decltype(gathered)::stride], bars[decltype(gathered)::stride];
     gathered.read(packs);
-    for (auto& q : quads) q = Pack<T, W>(T(0));
-    update_particles_adjoint<Sch>(p, s, count, packs, material, step, domain, bar, quads, report);
-    gathered.fill(quads);
+    for (auto& b : bars) b = Pack<T, W>(T(0));
+    update_particles_adjoint<Sch>(p, s, count, packs, material, step, domain, bar, bars, report);
+    gathered.fill(bars);
 
     PlaceSums<Sch> by_place;
     for (int l = 0; l < count; ++l) {

@@ -5,17 +5,17 @@
 
 namespace jaxmpm {
 
-/// Sums by place of W particles (quads of one pack an axis): four lanes each, still to be added.
+/// Sums by place of W particles (one pack an axis): four lanes each, still to be added.
 template <class Sch>
 struct PlaceSums {
   using T = typename Sch::T;
-  static constexpr int per_store = GatheredQuads<Sch>::per_store;
+  static constexpr int N = RowShape<T, Sch::S, Sch::V>::N, per_store = N / 4;
   static constexpr int padded = (Sch::Dim + per_store - 1) / per_store * per_store;
   ParticleRows<T, 4 * padded> rows;
 
   /// Takes the packs of one particle.
-  JAXMPM_INLINE void put(int lane, const Pack<T, RowShape<T, Sch::S>::N>* sums) {
-    for (int i = 0; i < padded; i += per_store) sum_quads<T, RowShape<T, Sch::S>::N>(sums + i).store(rows.row(lane) + 4 * i);
+  JAXMPM_INLINE void put(int lane, const Pack<T, N>* sums) {
+    for (int i = 0; i < padded; i += per_store) sum_groups<4>(sums + i).store(rows.row(lane) + 4 * i);
   }
   /// Adds them to the derivatives by position.
   JAXMPM_INLINE void add_to(Particles<T, Sch::Dim>& bar, std::size_t s, int count) {
@@ -29,21 +29,23 @@ struct PlaceSums {
   }
 };
 
-/// The derivatives by a particle's quads, gathered: per plane the value with w, then Dim with d and Dim with g as far as it has them.
+/// The derivatives by a particle's groups of V values, gathered: per plane the value with w, then Dim with d and Dim with g as far as it has
+/// them; and by its mass, where that is apart, in two parts.
 template <class Sch>
 struct GatheredBars {
   using Q = Coefficients<Sch>;
-  static constexpr int Dim = Sch::Dim, per_store = GatheredQuads<Sch>::per_store;
+  static constexpr int Dim = Sch::Dim, V = Sch::V, per_store = RowShape<typename Sch::T, Sch::S, V>::N / V;
   static constexpr bool with_d = Sch::p2g_moments, with_g = Sch::p2g_slopes;
   static constexpr bool full(int plane) { return plane == (Sch::flip ? 1 : 0); }  // has more than the value
   static constexpr int size(int plane) { return full(plane) ? 1 + Dim * (int(with_d) + int(with_g)) : 1; }
   static constexpr int first(int plane) { return plane == 0 ? 0 : size(0); }
   static constexpr int force = first(Sch::flip ? 1 : 0) + 1 + (with_d && with_g ? Dim : 0);
-  static constexpr int dilation = 4 * first(Sch::dilation_plane) + Sch::dilation_lane;
-  static constexpr int count = Sch::planes == 1 ? size(0) : size(0) + size(1), padded = (count + per_store - 1) / per_store * per_store;
+  static constexpr int dilation = V * first(Sch::dilation_plane) + Sch::dilation_lane;
+  static constexpr int mass = Sch::planes == 1 ? size(0) : size(0) + size(1);
+  static constexpr int count = mass + int(V == 2), padded = (count + per_store - 1) / per_store * per_store;
 };
 
-/// Adjoint of Coefficients: what the gathered derivatives by a particle's quads bring to its fields.
+/// Adjoint of Coefficients: what the gathered derivatives by a particle's coefficients bring to its fields.
 template <class Sch>
 JAXMPM_INLINE void coefficients_adjoint(const Particles<typename Sch::T, Sch::Dim>& p, std::size_t s, int count,
                                         const Pack<typename Sch::T, batch<typename Sch::T>>* gathered,
@@ -55,13 +57,13 @@ JAXMPM_INLINE void coefficients_adjoint(const Particles<typename Sch::T, Sch::Di
   using G = GatheredBars<Sch>;
   constexpr int W = batch<T>, Dim = Sch::Dim;
   using P = Pack<T, W>;
-  const auto quad = [&](int q, int c) { return gathered[4 * q + 1 + c]; };
+  const auto by_component = [&](int group, int c) { return gathered[G::V * group + Sch::vector_at + c]; };
   const auto add = [&](Array<T>& field, P value) { store(field.data() + s, load(field.data() + s, count) + value, count); };
   const P m = load(p.mass.data() + s, count);
-  P by_mass = gathered[0];
+  P by_mass = G::V == 2 ? gathered[2 * G::mass] + gathered[2 * G::mass + 1] : gathered[0];
   for (int c = 0; c < Dim; ++c) {
-    by_mass += quad(0, c) * load(p.velocity[std::size_t(c)].data() + s, count);
-    add(bar.velocity[std::size_t(c)], m * quad(0, c));
+    by_mass += by_component(0, c) * load(p.velocity[std::size_t(c)].data() + s, count);
+    add(bar.velocity[std::size_t(c)], m * by_component(0, c));
   }
   if constexpr (Sch::dilation)
     if (!p.dilation.empty()) {
@@ -73,7 +75,7 @@ JAXMPM_INLINE void coefficients_adjoint(const Particles<typename Sch::T, Sch::Di
     const P size(step.cell_size);
     for (int c = 0; c < Dim; ++c)
       for (int k = 0; k < Dim; ++k) {
-        const P by = size * quad(first_moment + k, c);
+        const P by = size * by_component(first_moment + k, c);
         by_mass += by * load(p.affine[std::size_t(c * Dim + k)].data() + s, count);
         add(bar.affine[std::size_t(c * Dim + k)], m * by);
       }
@@ -87,8 +89,8 @@ JAXMPM_INLINE void coefficients_adjoint(const Particles<typename Sch::T, Sch::Di
   for (int c = 0; c < Dim; ++c)
     for (int k = 0; k < Dim; ++k) {
       const int at = Symmetric<T, Dim>::index(c, k);
-      by_impulse += quad(G::force + k, c) * P::load(sigma[at]);
-      by_stress[at] += impulse * quad(G::force + k, c);
+      by_impulse += by_component(G::force + k, c) * P::load(sigma[at]);
+      by_stress[at] += impulse * by_component(G::force + k, c);
     }
   by_mass += by_impulse * per_mass;
   add(bar.mass, by_mass);
@@ -109,16 +111,16 @@ void p2g_adjoint_tile(const Particles<typename Sch::T, Sch::Dim>& p, std::size_t
                       MaterialReport& report) {
   using T = typename Sch::T;
   using Q = Coefficients<Sch>;
-  using R = typename StencilRows<Sch>::R;
+  using R = typename StencilRows<Sch, true>::R;
   using G = GatheredBars<Sch>;
   constexpr int W = batch<T>;
-  StencilRows<Sch> rows[Sch::planes];
+  StencilRows<Sch, true> rows[Sch::planes];
   for (auto& r : rows) r.clear();
   int current = -1;
   for_each_batch<T>(begin, end, [&](std::size_t s, int count) JAXMPM_INLINE_LAMBDA {
     const Stencils<Sch, G::with_d, G::with_g, true> t(p, s, count, origin);
     const Q q(p, s, count, material, step);
-    ParticleRows<T, 4 * G::padded> gathered;
+    ParticleRows<T, G::V * G::padded> gathered;
     PlaceSums<Sch> by_place;
     for (int l = 0; l < count; ++l) {
       if (t.base[l] != current) {
@@ -134,7 +136,8 @@ void p2g_adjoint_tile(const Particles<typename Sch::T, Sch::Dim>& p, std::size_t
         static_assert((full && G::with_d) == (of.moments >= 0) && (full && G::with_g) == (of.slopes >= 0));
         contract<Sch, of.rest, of.moments, of.slopes>(rows[plane], t, l, q.rows.row(l), place, sums + G::first(plane));
       });
-      for (int i = 0; i < G::padded; i += G::per_store) sum_quads<T, R::lanes>(sums + i).store(gathered.row(l) + 4 * i);
+      if constexpr (G::V == 2) contract_mass<Sch>(rows[0], t, l, q.mass[l], place, sums[G::mass]);
+      for (int i = 0; i < G::padded; i += G::per_store) sum_groups<G::V>(sums + i).store(gathered.row(l) + G::V * i);
       by_place.put(l, place);
     }
     gathered.clear_behind(count);
