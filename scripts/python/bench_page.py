@@ -12,7 +12,7 @@ FOLDER, PAGE = ROOT / "docs" / "performance", ROOT / "docs" / "performance.md"
 BEGIN, END = "<!-- made by scripts/bench: begin -->", "<!-- made by scripts/bench: end -->"
 WHY = {
     "precision f64": "twice the bytes, half the lanes",
-    "precision f32": "half the bytes, twice the lanes; walls and sums of small blocks do not get cheaper",
+    "precision f32": "half the bytes, twice the lanes; in 2D rows of either take one pack, and walls and sums of small blocks do not get cheaper",
     "transfer pic": "no affine field to read, write and transfer",
     "transfer flip": "a second plane of nodes (Δv), but no affine field",
     "transfer tpic": "the affine field comes from the sums that the spline gradient needs anyway",
