@@ -53,11 +53,11 @@ class FinalPositions : public Observer {
 /// The gradient of the first `dt.size()` steps, within the deck's memory and disk: the second of two, as most of an inversion's, since the
 /// first one also pays for memory that no one has touched before.
 nlohmann::ordered_json bench_gradient(const Model& model, Backend backend, const deck::Deck& deck, std::vector<double> dt,
-                                      std::size_t blocks, double plain_seconds) {
+                                      std::size_t blocks, std::uint64_t sorts, double plain_seconds) {
   double end = 0;
   for (const double step : dt) end += step;
   FinalPositions observer(end);
-  const StepSequence steps{dt, {dt.size()}, blocks, {}};
+  const StepSequence steps{dt, {dt.size()}, blocks, sorts, {}};
   SnapshotStack snapshots(make_state_memory(backend), deck.output.directory);
   const Room room = room_of(deck.inverse.empty() ? deck::Inverse{} : deck::inverse_of(deck));
   const MemoryPlan plan = plan_gradient(model, steps, room, snapshots);
@@ -103,10 +103,11 @@ nlohmann::ordered_json measure(const BenchOptions& options) {
   result["cpu_seconds"] = cpu;
   if (!options.gradient) return result;
   const std::size_t blocks = solver->active_blocks();
+  const std::uint64_t sorts = solver->sorts();
   solver.reset();
   dt.insert(dt.end(), measured.begin(), measured.end());
   dt.resize(options.steps);
-  result["gradient"] = bench_gradient(model, backend, deck, std::move(dt), blocks, seconds);
+  result["gradient"] = bench_gradient(model, backend, deck, std::move(dt), blocks, sorts, seconds);
   return result;
 }
 

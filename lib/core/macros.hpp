@@ -11,6 +11,8 @@
 #define JAXMPM_INLINE inline __attribute__((always_inline))
 #define JAXMPM_FUNCTION inline
 #endif
+// JAXMPM_ONCE keeps a function out of its callers: whoever calls it gets the same bits, however products and sums are joined elsewhere.
+#define JAXMPM_ONCE __attribute__((noinline))
 // JAXMPM_INLINE_LAMBDA, after the parameters, insists for a lambda on the host; instrumented builds take four times as long with it.
 #if defined(__SANITIZE_ADDRESS__)
 #define JAXMPM_INLINE_LAMBDA

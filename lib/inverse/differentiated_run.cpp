@@ -60,9 +60,10 @@ class Reversal {
         stop_(stop),
         walk_(solver.forward(), steps, observer, stop),
         snapshots_(plan.snapshots),
+        lean_(plan.lean),
         numbers_(stack) {
     solver.expect_blocks(steps.most_blocks);
-    numbers_.prepare(solver.kept_bytes(), plan.snapshots - plan.on_disk, plan.on_disk);
+    numbers_.prepare(solver.kept_bytes(), {plan.snapshots - plan.on_disk, plan.on_disk, lean_ ? solver.lean_bytes() : 0});
     keep(0);
   }
 
@@ -89,6 +90,7 @@ class Reversal {
       reverse_step(start);
       end = start;
     }
+    solver_.end_reverse();
     cost.reverse_seconds = watch.seconds() - cost.forward_seconds;
     cost.particles_at_kinks = solver_.at_kinks();
     return solver_.gradient();
@@ -102,7 +104,8 @@ class Reversal {
   static constexpr std::size_t lost = ~std::size_t(0);
 
   void keep(std::size_t state) {
-    kept_.push_back({state, solver_.keep(numbers_.push())});
+    const bool lean = lean_ && solver_.may_be_lean();
+    kept_.push_back({state, solver_.keep(numbers_.push(lean), lean)});
     present_ = state;
   }
   void keep_sums() { solver_.keep_sums(*kept_.back().rest, numbers_.change_top()); }
@@ -121,7 +124,6 @@ class Reversal {
   }
   /// Reverses the step from the newest kept state, and forgets that.
   void reverse_step(std::size_t start) {
-    go_to(start);
     solver_.step_adjoint(steps_.dt[start], *kept_.back().rest, numbers_.top());
     if (start == 0 || looked_at(start)) {
       go_back();
@@ -142,6 +144,7 @@ class Reversal {
   const std::function<bool()>& stop_;
   Walk walk_;
   std::size_t snapshots_, present_ = 0;
+  bool lean_;
   std::vector<Snapshot> kept_;
   SnapshotStack& numbers_;  // of kept_
 };
@@ -169,14 +172,22 @@ Split split_snapshots(const ReversibleSolver& solver, std::size_t wanted, const 
   return split;
 }
 
+/// Memory for all states of a run where most are lean: the first one is not, nor those before and after a sort. They are counted as of the
+/// recorded run with a good margin, since the unknowns of an inversion change how often particles are sorted.
+std::size_t bytes_of_lean_run(const ReversibleSolver& solver, const StepSequence& steps) {
+  const std::size_t whole = std::min<std::size_t>(steps.dt.size(), 8 + 3 * std::size_t(steps.sorts));
+  return whole * (solver.kept_bytes() + solver.shared_bytes()) + (steps.dt.size() - whole) * solver.lean_bytes();
+}
+
 /// The adjoint of one step, after which a stepper has all its memory.
 void try_adjoint(ReversibleSolver& solver, Backend backend, double dt) {
   SnapshotPool pool(make_state_memory(backend));
   pool.prepare(solver.kept_bytes(), 1);
   std::byte* numbers = pool.take();
-  const std::unique_ptr<KeptState> kept = solver.keep(numbers);
+  const std::unique_ptr<KeptState> kept = solver.keep(numbers, false);
   solver.start_reverse();
   solver.step_adjoint(dt, *kept, numbers);
+  solver.end_reverse();
 }
 
 /// The next moment of a run that also meets the observer's times.
@@ -210,6 +221,7 @@ StepSequence record_run(const Model& model, Backend backend, Observer& observer,
     steps.dt.push_back(now.dt);
     steps.most_blocks = std::max(steps.most_blocks, solver.active_blocks());
   }
+  steps.sorts = solver.sorts();
   if (!steps.dt.empty()) steps.note = moving_note(model, solver, now.time);
   return steps;
 }
@@ -233,7 +245,13 @@ MemoryPlan plan_gradient(const Model& model, const StepSequence& steps, const Ro
   const std::size_t fixed = used - std::min(stack.memory_bytes(), used) + 4 * plan.snapshot_bytes;
   constexpr std::size_t least = 2;
   const std::size_t wanted = std::max<std::size_t>(plan.steps, 1);
-  const Split split = split_snapshots(*solver, wanted, {room.memory - std::min(fixed, room.memory), room.disk});
+  const std::size_t left = room.memory - std::min(fixed, room.memory), lean_run = bytes_of_lean_run(*solver, steps);
+  if (solver->lean_bytes() < solver->kept_bytes() && plan.steps > 0 && lean_run <= left) {
+    plan.lean = true, plan.snapshots = plan.steps;
+    plan.snapshot_bytes = lean_run / plan.steps, plan.peak_bytes = fixed + lean_run;
+    return plan;
+  }
+  const Split split = split_snapshots(*solver, wanted, {left, room.disk});
   constexpr double mib = 1 << 20, varying = 1;  // MiB: what is resident is not quite the same in the next run
   if (split.all() < least && plan.steps > 1)
     throw Error(ExitCode::deck,

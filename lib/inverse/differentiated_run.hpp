@@ -13,6 +13,7 @@ struct StepSequence {
   std::vector<double> dt;          // s
   std::vector<std::size_t> looks;  // [time of the observer] number of steps done
   std::size_t most_blocks = 0;     // active in one step: kept states have room for what they sum
+  std::uint64_t sorts = 0;         // of particles, the first included
   std::string note;                // moving_note() of the end
 };
 
@@ -24,6 +25,7 @@ struct Room {
 /// What a gradient costs, known before it starts.
 struct MemoryPlan {
   std::size_t steps = 0, snapshots = 0, on_disk = 0;  // snapshots kept at once, those on disk included
+  bool lean = false;                                  // all states are kept, in memory, and most are lean
   std::size_t snapshot_bytes = 0, peak_bytes = 0, disk_bytes = 0;
   double recomputed_steps = 0;  // forward steps besides the first pass
 };

@@ -4,17 +4,19 @@
 
 namespace jaxmpm {
 
-void SnapshotStack::prepare(std::size_t bytes, std::size_t in_memory, std::size_t on_disk) {
+void SnapshotStack::prepare(std::size_t bytes, const SnapshotRoom& room) {
   while (!blocks_.empty()) pop();
-  pool_.prepare(bytes, in_memory);
-  file_.prepare(bytes, on_disk);
-  passing_.resize(on_disk > 0 ? bytes : 0);
-  in_memory_ = in_memory;
+  pool_.prepare(bytes, room.in_memory);
+  lean_pool_.prepare(room.lean_bytes, room.lean_bytes > 0 ? room.in_memory : 0);
+  file_.prepare(bytes, room.on_disk);
+  passing_.resize(room.on_disk > 0 ? bytes : 0);
+  in_memory_ = room.in_memory;
 }
 
-std::byte* SnapshotStack::push() {
+std::byte* SnapshotStack::push(bool lean) {
   if (size() - first_in_memory_ == in_memory_) spill();
-  blocks_.push_back(pool_.take());
+  blocks_.push_back((lean ? lean_pool_ : pool_).take());
+  lean_.push_back(lean);
   return blocks_.back();
 }
 
@@ -46,8 +48,8 @@ std::byte* SnapshotStack::change_top() {
 }
 
 void SnapshotStack::pop() {
-  if (first_in_memory_ < size()) pool_.give_back(blocks_.back());
-  blocks_.pop_back();
+  if (first_in_memory_ < size()) (lean_.back() ? lean_pool_ : pool_).give_back(blocks_.back());
+  blocks_.pop_back(), lean_.pop_back();
   first_in_memory_ = std::min(first_in_memory_, size()), in_file_ = std::min(in_file_, size());
 }
 

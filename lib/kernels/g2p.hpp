@@ -107,6 +107,20 @@ JAXMPM_INLINE Pack<T, batch<T>> average_volume(const Particles<T, Dim>& p, std::
   return trace;
 }
 
+/// The affine field that follows from what was gathered.
+template <class Sch>
+JAXMPM_INLINE void store_affine(Particles<typename Sch::T, Sch::Dim>& p, std::size_t s, int count,
+                                const Pack<typename Sch::T, batch<typename Sch::T>>* gathered, const StepConstants<typename Sch::T>& step) {
+  using G = GatheredGroups<Sch>;
+  if constexpr (Sch::affine) {
+    constexpr int Dim = Sch::Dim, from = Sch::affine_by_moments ? G::moments : G::slopes;
+    const Pack<typename Sch::T, batch<typename Sch::T>> scale(Sch::affine_scale / step.cell_size);
+    for (int c = 0; c < Dim; ++c)
+      for (int k = 0; k < Dim; ++k)
+        store(p.affine[std::size_t(c * Dim + k)].data() + s, scale * gathered[G::component(from + k, c)], count);
+  }
+}
+
 /// Moves W particles and advances their material.
 template <class Sch>
 JAXMPM_INLINE void update_particles(Particles<typename Sch::T, Sch::Dim>& p, std::size_t s, int count,
@@ -132,12 +146,7 @@ JAXMPM_INLINE void update_particles(Particles<typename Sch::T, Sch::Dim>& p, std
     moved = max(moved, abs(dX));
     if (!move_places(p.position[std::size_t(c)].data() + s, count, dX, domain[std::size_t(c)])) report.inside = false;
   }
-  if constexpr (Sch::affine) {
-    constexpr int from = Sch::affine_by_moments ? G::moments : G::slopes;
-    const P scale(Sch::affine_scale / step.cell_size);
-    for (int c = 0; c < Dim; ++c)
-      for (int k = 0; k < Dim; ++k) store(p.affine[std::size_t(c * Dim + k)].data() + s, scale * component(from + k, c), count);
-  }
+  store_affine<Sch>(p, s, count, gathered, step);
   constexpr int from = Sch::mls ? G::moments : G::slopes;
   const P rate(Sch::gradient_scale / step.cell_size);
   alignas(64) T H[Dim * Dim][W], speed[W];

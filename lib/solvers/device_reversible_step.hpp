@@ -17,13 +17,16 @@ class DeviceReversibleStep final : public DeviceStep<T, Dim, Space>, public Reve
   void expect_blocks(std::size_t) override {}
   void keep_sums(KeptState&, std::byte*) override {}
   std::size_t kept_bytes() const override;
+  std::size_t lean_bytes() const override { return kept_bytes(); }
   std::size_t shared_bytes() const override;
-  std::unique_ptr<KeptState> keep(std::byte* numbers) override;
+  bool may_be_lean() const override { return false; }
+  std::unique_ptr<KeptState> keep(std::byte* numbers, bool lean) override;
   void go_back(const KeptState& kept, const std::byte* numbers) override;
 
   void start_reverse() override;
   void add_gradient(const SnapshotGradient& by) override;
   void step_adjoint(double dt, const KeptState& kept, const std::byte* numbers) override;
+  void end_reverse() override {}
   ModelGradient gradient() const override;
   std::uint64_t at_kinks() const override;
 

@@ -8,7 +8,8 @@ namespace jaxmpm {
 
 /// DeviceStep::step(), read upwards. The nodes' velocities come from a scatter, as at first.
 template <class T, int Dim, class Space>
-void DeviceReversibleStep<T, Dim, Space>::step_adjoint(double dt, const KeptState&, const std::byte*) {
+void DeviceReversibleStep<T, Dim, Space>::step_adjoint(double dt, const KeptState& state, const std::byte* numbers) {
+  go_back(state, numbers);
   this->constants_.dt = T(dt);
   const bool sorted = this->sort_is_due();
   if (sorted) note_places(), this->sort();
@@ -125,7 +126,7 @@ auto DeviceReversibleStep<T, Dim, Space>::present_epoch() -> std::shared_ptr<con
 }
 
 template <class T, int Dim, class Space>
-std::unique_ptr<KeptState> DeviceReversibleStep<T, Dim, Space>::keep(std::byte* numbers) {
+std::unique_ptr<KeptState> DeviceReversibleStep<T, Dim, Space>::keep(std::byte* numbers, bool) {
   for (const auto& body : this->bodies_) {
     body.particles.keep(this->space_, numbers);
     numbers += body.particles.kept_bytes();

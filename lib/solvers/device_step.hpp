@@ -94,6 +94,7 @@ class DeviceStep : public Solver {
   double bytes_per_particle() const override;
   PhaseSeconds phase_seconds() const override { return timer_.seconds(sort_seconds_); }
   std::size_t active_blocks() const override { return blocks_.count(); }
+  std::uint64_t sorts() const override { return sorts_; }
 
  protected:
   /// Particles may move this far, in cells, before they are sorted again: nearly as far as the arenas' halo reaches, as sorting costs more

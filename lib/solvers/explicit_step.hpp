@@ -27,6 +27,7 @@ class ExplicitStep : public Solver {
   double bytes_per_particle() const override;
   PhaseSeconds phase_seconds() const override { return seconds_; }
   std::size_t active_blocks() const override { return blocks_.count(); }
+  std::uint64_t sorts() const override { return sorts_; }
   std::uint64_t particles_at_rest() const override { return rest_.particles(); }
 
  protected:

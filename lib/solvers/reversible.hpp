@@ -21,11 +21,15 @@ class ReversibleSolver {
   /// Steps will have so many active blocks at most: kept states get room for their sums, without which the adjoint of a step has
   /// to scatter again.
   virtual void expect_blocks(std::size_t most) = 0;
-  /// Bytes of the numbers of a kept state, and of what states share until the next sort.
+  /// Bytes of the numbers of a kept state, of a lean one (as many where there are none), and of what states share until the next sort.
   virtual std::size_t kept_bytes() const = 0;
+  virtual std::size_t lean_bytes() const = 0;
   virtual std::size_t shared_bytes() const = 0;
-  /// Keeps the present state; its numbers are written to `numbers`, kept_bytes() of them.
-  virtual std::unique_ptr<KeptState> keep(std::byte* numbers) = 0;
+  /// Whether the present state may be kept lean: without what its particles move with, as the reverse run can gather that from the state
+  /// before it, the last to be kept. So it is unless particles were sorted on the way from there, or are sorted next.
+  virtual bool may_be_lean() const = 0;
+  /// Keeps the present state; its numbers are written to `numbers`. From a lean one the way forward cannot be gone again.
+  virtual std::unique_ptr<KeptState> keep(std::byte* numbers, bool lean) = 0;
   /// Adds to a kept state what the step from it, the last one taken, summed at the nodes.
   virtual void keep_sums(KeptState& kept, std::byte* numbers) = 0;
   /// Makes a kept state the present one.
@@ -35,10 +39,12 @@ class ReversibleSolver {
   virtual void start_reverse() = 0;
   /// Adds derivatives of the loss by the present state, given by its snapshot in order of ids.
   virtual void add_gradient(const SnapshotGradient& by) = 0;
-  /// Derivatives by the state after a step of dt from a kept state, which is the present one, become those by that. The present state is
-  /// lost.
+  /// Derivatives by the state after a step of dt from a kept state become those by that; part of it may wait for the next call, whose step
+  /// is the one before, or for end_reverse(). The present state is lost: go_back() to `kept` before add_gradient().
   virtual void step_adjoint(double dt, const KeptState& kept, const std::byte* numbers) = 0;
-  /// Derivatives by the model, once the reverse run has come to the first state.
+  /// Does what waits.
+  virtual void end_reverse() = 0;
+  /// Derivatives by the model, once the reverse run has come to the first state and has been ended there.
   virtual ModelGradient gradient() const = 0;
   /// Particle-steps so far whose material stood within round-off of a branch.
   virtual std::uint64_t at_kinks() const = 0;

@@ -15,16 +15,24 @@ struct Stretch {
   std::size_t offset, size;
 };
 
-/// Appends the fields that a step changes, in pieces that several threads can share.
+/// Which fields of a kept state: those of the material, what particles move with, or both.
+enum class Part { material, motion, all };
+
+/// The fields that a step changes, in the order of a kept state, in pieces that several threads can share.
 template <class T, int Dim>
-void add_stretches(Particles<T, Dim>& p, std::vector<Stretch>& stretches) {
+std::vector<Stretch> stretches(std::vector<Particles<T, Dim>>& bodies, Part part) {
   constexpr std::size_t piece = std::size_t(1) << 15;
-  p.for_each_changing_field([&](auto& field) {
+  std::vector<Stretch> all;
+  std::size_t offset = 0;
+  const auto add = [&](auto& field, bool wanted) {
     const std::size_t bytes = field.size() * sizeof(field[0]);
-    const std::size_t before = stretches.empty() ? 0 : stretches.back().offset + stretches.back().size;
-    for (std::size_t done = 0; done < bytes; done += piece)
-      stretches.push_back({reinterpret_cast<std::byte*>(field.data()) + done, before + done, std::min(piece, bytes - done)});
-  });
+    for (std::size_t done = 0; wanted && done < bytes; done += piece)
+      all.push_back({reinterpret_cast<std::byte*>(field.data()) + done, offset + done, std::min(piece, bytes - done)});
+    offset += bytes;
+  };
+  for (Particles<T, Dim>& p : bodies) p.for_each_material_field([&](auto& field) { add(field, part != Part::motion); });
+  for (Particles<T, Dim>& p : bodies) p.for_each_motion_field([&](auto& field) { add(field, part != Part::material); });
+  return all;
 }
 
 template <class Copy>
@@ -33,28 +41,69 @@ void copy_stretches(const std::vector<Stretch>& stretches, Copy&& copy) {
                            [&](std::size_t k) { copy(stretches[k].field, stretches[k].offset, stretches[k].size); });
 }
 
+/// Copies fields out of a kept state's numbers.
+template <class T, int Dim>
+void read_fields(std::vector<Particles<T, Dim>>& bodies, Part part, const std::byte* numbers) {
+  copy_stretches(stretches(bodies, part),
+                 [&](std::byte* field, std::size_t offset, std::size_t size) { std::memcpy(field, numbers + offset, size); });
+}
+
+/// Swaps the fields of the material.
+template <class T, int Dim>
+void swap_material(Particles<T, Dim>& a, Particles<T, Dim>& b) {
+  a.position.swap(b.position), a.compression.swap(b.compression), a.history.swap(b.history), a.dilation.swap(b.dilation);
+}
+
 }  // namespace
 
 /// ExplicitStep::step(), read upwards. The nodes' velocities are needed, and come from the sums that were kept, or from a scatter as at
-/// first.
+/// first. The last stage waits for the next call, which does it together with its own first where the state in between is the same for both:
+/// what particles move with there is gathered in passing. That makes no difference to the numbers.
 template <class T, int Dim>
 void ReversibleStep<T, Dim>::step_adjoint(double dt, const KeptState& state, const std::byte* numbers) {
-  this->constants_.dt = T(dt);
+  const Kept& kept = static_cast<const Kept&>(state);
   Orders orders;
-  const bool sorted = this->sort_is_due();
-  if (sorted) this->sort(&orders);
-  if (static_cast<const Kept&>(state).has_sums) {
-    this->grid_.update_again(this->blocks_, reinterpret_cast<const T*>(numbers + particle_bytes()), dt, this->numbers_.time);
+  bool sorted = false;
+  if (waiting_ && kept.has_sums && kept.epoch == epoch_ && !(kept.numbers.drift > this->sort_after)) {
+    const StepConstants<T> after = this->constants_;
+    this->constants_.dt = T(dt);
+    read_fields(before_, Part::material, numbers);
+    update_grid_again(kept, numbers, dt);
+    between_steps_adjoint(after);
+    for (std::size_t b = 0; b < before_.size(); ++b) swap_material(this->bodies_[b], before_[b]);
+    if (!kept.lean) read_fields(this->bodies_, Part::motion, numbers);
+    this->numbers_ = kept.numbers;
   } else {
-    this->p2g();
-    this->update_grid(dt);
+    end_reverse();
+    go_back(state, numbers);
+    this->constants_.dt = T(dt);
+    sorted = this->sort_is_due();
+    if (sorted) this->sort(&orders);
+    if (kept.has_sums) {
+      update_grid_again(kept, numbers, dt);
+    } else {
+      this->p2g();
+      this->update_grid(dt);
+    }
+    g2p_adjoint();  // Eqs 15–18 and the stress (19–21): by the particles' end values → by velocities of nodes, and by start values
   }
-
-  g2p_adjoint();  // Eqs 15–18 and the stress (19–21): by the particles' end values → by velocities of nodes, and by start values
   update_grid_adjoint(dt);  // Eqs 13–14: by velocities → by sums of nodes
-  p2g_adjoint();            // Eqs 10–12: by sums of nodes → by the particles' start values
+  waiting_ = kept.serial;
+  if (!sorted && adjoint_.between_steps) return;
+  end_reverse();  // Eqs 10–12: by sums of nodes → by the particles' start values
   if (sorted) unsort(orders);
-  add_reports();
+}
+
+template <class T, int Dim>
+void ReversibleStep<T, Dim>::end_reverse() {
+  if (!waiting_) return;
+  waiting_ = 0;
+  p2g_adjoint();
+}
+
+template <class T, int Dim>
+void ReversibleStep<T, Dim>::update_grid_again(const Kept& kept, const std::byte* numbers, double dt) {
+  this->grid_.update_again(this->blocks_, reinterpret_cast<const T*>(numbers + particle_bytes(kept.lean)), dt, kept.numbers.time);
 }
 
 template <class T, int Dim>
@@ -73,13 +122,14 @@ ReversibleStep<T, Dim>::ReversibleStep(const Model& model)
 template <class T, int Dim>
 void ReversibleStep<T, Dim>::g2p_adjoint() {
   const auto& tiles = this->blocks_.tiles;
-  tile_reports_.assign(tiles.size(), {});
+  g2p_reports_.assign(tiles.size(), {});
   parallel_for_host("jaxmpm::g2p_adjoint", tiles.size(), [&](std::size_t t) {
     const Tile& tile = tiles[t];
     adjoint_.g2p(this->bodies_[tile.body], tile, this->blocks_, this->grid_.grid(), *material_adjoints_[tile.body], this->constants_,
                  this->arena_origin(tile), this->domain_, this->arenas_.data() + t * this->kernels_.arena_size, bars_[tile.body],
-                 tile_reports_[t]);
+                 g2p_reports_[t]);
   });
+  add_g2p_reports();
 }
 
 template <class T, int Dim>
@@ -90,11 +140,29 @@ void ReversibleStep<T, Dim>::update_grid_adjoint(double dt) {
 template <class T, int Dim>
 void ReversibleStep<T, Dim>::p2g_adjoint() {
   const auto& tiles = this->blocks_.tiles;
+  p2g_reports_.assign(tiles.size(), {});
   parallel_for_host("jaxmpm::p2g_adjoint", tiles.size(), [&](std::size_t t) {
     const Tile& tile = tiles[t];
     adjoint_.p2g(this->bodies_[tile.body], tile, this->blocks_, grid_adjoint_.by_sums(), *this->materials_[tile.body],
-                 *material_adjoints_[tile.body], this->constants_, this->arena_origin(tile), bars_[tile.body], tile_reports_[t].material);
+                 *material_adjoints_[tile.body], this->constants_, this->arena_origin(tile), bars_[tile.body], p2g_reports_[t]);
   });
+  add_p2g_reports();
+}
+
+/// p2g_adjoint() of the step from the present state, whose constants are `after`, and g2p_adjoint() of the step before it.
+template <class T, int Dim>
+void ReversibleStep<T, Dim>::between_steps_adjoint(const StepConstants<T>& after) {
+  const auto& tiles = this->blocks_.tiles;
+  p2g_reports_.assign(tiles.size(), {}), g2p_reports_.assign(tiles.size(), {});
+  parallel_for_host("jaxmpm::between_steps_adjoint", tiles.size(), [&](std::size_t t) {
+    const Tile& tile = tiles[t];
+    adjoint_.between_steps(this->bodies_[tile.body], before_[tile.body], tile, this->blocks_, *this->materials_[tile.body],
+                           *material_adjoints_[tile.body], this->arena_origin(tile), this->domain_,
+                           this->arenas_.data() + t * this->kernels_.arena_size, bars_[tile.body],
+                           {after, this->constants_, grid_adjoint_.by_sums(), this->grid_.grid(), p2g_reports_[t], g2p_reports_[t]});
+  });
+  add_p2g_reports();
+  add_g2p_reports();
 }
 
 /// Puts the derivatives back into the order that the particles had before the sort.
@@ -108,16 +176,23 @@ void ReversibleStep<T, Dim>::unsort(const Orders& orders) {
     });
 }
 
-/// Adds up what the tiles report, in their order.
+/// Adds up what a tile reports of its material.
 template <class T, int Dim>
-void ReversibleStep<T, Dim>::add_reports() {
-  for (std::size_t t = 0; t < tile_reports_.size(); ++t) {
-    const AdjointReport& report = tile_reports_[t];
-    MaterialReport& total = material_totals_[this->blocks_.tiles[t].body];
-    for (std::size_t k = 0; k < total.constants.size(); ++k) total.constants[k] += report.material.constants[k];
-    total.at_kinks += report.material.at_kinks;
-    flip_fraction_ += report.flip_fraction;
-  }
+void ReversibleStep<T, Dim>::add_report(std::size_t tile, const MaterialReport& report) {
+  MaterialReport& total = material_totals_[this->blocks_.tiles[tile].body];
+  for (std::size_t k = 0; k < total.constants.size(); ++k) total.constants[k] += report.constants[k];
+  total.at_kinks += report.at_kinks;
+}
+
+/// Add up what the tiles report, in their order.
+template <class T, int Dim>
+void ReversibleStep<T, Dim>::add_g2p_reports() {
+  for (std::size_t t = 0; t < g2p_reports_.size(); ++t)
+    add_report(t, g2p_reports_[t].material), flip_fraction_ += g2p_reports_[t].flip_fraction;
+}
+template <class T, int Dim>
+void ReversibleStep<T, Dim>::add_p2g_reports() {
+  for (std::size_t t = 0; t < p2g_reports_.size(); ++t) add_report(t, p2g_reports_[t]);
 }
 
 template <class T, int Dim>
@@ -128,10 +203,13 @@ std::uint64_t ReversibleStep<T, Dim>::at_kinks() const {
 }
 
 template <class T, int Dim>
-std::size_t ReversibleStep<T, Dim>::particle_bytes() const {
+std::size_t ReversibleStep<T, Dim>::particle_bytes(bool lean) const {
   std::size_t bytes = 0;
-  for (const Particles<T, Dim>& p : this->bodies_)
-    p.for_each_changing_field([&](const auto& field) { bytes += field.size() * sizeof(field[0]); });
+  const auto add = [&](const auto& field) { bytes += field.size() * sizeof(field[0]); };
+  for (const Particles<T, Dim>& p : this->bodies_) {
+    p.for_each_material_field(add);
+    if (!lean) p.for_each_motion_field(add);
+  }
   constexpr std::size_t line = 64;  // of cache, where the sums begin
   return (bytes + line - 1) / line * line;
 }
@@ -145,8 +223,10 @@ void ReversibleStep<T, Dim>::expect_blocks(std::size_t most) {
 template <class T, int Dim>
 void ReversibleStep<T, Dim>::keep_sums(KeptState& state, std::byte* numbers) {
   if (this->grid_.sums_size() * sizeof(T) > room_for_sums_) return;
-  this->grid_.copy_sums(reinterpret_cast<T*>(numbers + particle_bytes()));
-  static_cast<Kept&>(state).has_sums = true;
+  Kept& kept = static_cast<Kept&>(state);
+  this->grid_.copy_sums(reinterpret_cast<T*>(numbers + particle_bytes(kept.lean)));
+  kept.has_sums = true;
+  sums_kept_ = true;
 }
 
 template <class T, int Dim>
@@ -167,22 +247,29 @@ auto ReversibleStep<T, Dim>::present_epoch() -> std::shared_ptr<const Epoch> {
 }
 
 template <class T, int Dim>
-std::unique_ptr<KeptState> ReversibleStep<T, Dim>::keep(std::byte* numbers) {
-  std::vector<Stretch> stretches;
-  for (Particles<T, Dim>& p : this->bodies_) add_stretches(p, stretches);
-  copy_stretches(stretches, [&](std::byte* field, std::size_t offset, std::size_t size) { std::memcpy(numbers + offset, field, size); });
+bool ReversibleStep<T, Dim>::may_be_lean() const {
+  return adjoint_.between_steps && sums_kept_ && kept_sorts_ == this->sorts_ && !this->sort_is_due();
+}
+
+template <class T, int Dim>
+std::unique_ptr<KeptState> ReversibleStep<T, Dim>::keep(std::byte* numbers, bool lean) {
+  end_reverse();
   auto kept = std::make_unique<Kept>();
-  kept->epoch = present_epoch(), kept->numbers = this->numbers_;
+  kept->lean = lean;
+  copy_stretches(stretches(this->bodies_, lean ? Part::material : Part::all),
+                 [&](std::byte* field, std::size_t offset, std::size_t size) { std::memcpy(numbers + offset, field, size); });
+  kept->epoch = present_epoch(), kept->numbers = this->numbers_, kept->serial = ++serials_;
+  kept_sorts_ = this->sorts_, sums_kept_ = false;
   return kept;
 }
 
 template <class T, int Dim>
 void ReversibleStep<T, Dim>::go_back(const KeptState& state, const std::byte* numbers) {
   const Kept& kept = static_cast<const Kept&>(state);
-  std::vector<Stretch> stretches;
-  for (Particles<T, Dim>& p : this->bodies_) add_stretches(p, stretches);
-  copy_stretches(stretches, [&](std::byte* field, std::size_t offset, std::size_t size) { std::memcpy(field, numbers + offset, size); });
-  this->numbers_ = kept.numbers;
+  if (waiting_ == kept.serial) return;  // it is the present one
+  end_reverse();
+  read_fields(this->bodies_, kept.lean ? Part::material : Part::all, numbers);
+  this->numbers_ = kept.numbers, sums_kept_ = false;
   if (kept.epoch == epoch_ && epoch_sorts_ == this->sorts_) return;
   epoch_ = kept.epoch, epoch_sorts_ = this->sorts_;
   for (std::size_t b = 0; b < this->bodies_.size(); ++b) {
@@ -200,9 +287,14 @@ void ReversibleStep<T, Dim>::start_reverse() {
   this->grid_.keep_sums();
   grid_adjoint_.clear_bars();
   material_totals_.assign(this->bodies_.size(), {});
-  flip_fraction_ = 0;
-  bars_.clear();
-  for (const Particles<T, Dim>& p : this->bodies_) bars_.push_back(zero_bars(p));
+  flip_fraction_ = 0, waiting_ = 0;
+  bars_.clear(), before_.clear();
+  for (const Particles<T, Dim>& p : this->bodies_) {
+    bars_.push_back(zero_bars(p));
+    if (!adjoint_.between_steps) continue;
+    Particles<T, Dim>& before = before_.emplace_back();
+    before.position = p.position, before.compression = p.compression, before.history = p.history, before.dilation = p.dilation;
+  }
 }
 
 template <class T, int Dim>

@@ -80,6 +80,8 @@ class Solver {
   virtual double bytes_per_particle() const = 0;
   virtual PhaseSeconds phase_seconds() const = 0;
   virtual std::size_t active_blocks() const = 0;
+  /// How often particles have been sorted so far.
+  virtual std::uint64_t sorts() const = 0;
   /// Particles that the next step leaves where they are (/method/rest).
   virtual std::uint64_t particles_at_rest() const { return 0; }
 };

@@ -57,14 +57,23 @@ struct Particles {
     visit(*this, f);
   }
 
-  /// Calls f(array) for every array that a step changes; sorting moves the others as well.
+  /// Calls f(array) for every array that a step changes (sorting moves the others as well): places and what the material carries, and what
+  /// a step gathers from the grid.
   template <class F>
-  void for_each_changing_field(F&& f) {
-    visit_changing(*this, f);
+  void for_each_material_field(F&& f) {
+    visit_material(*this, f);
   }
   template <class F>
-  void for_each_changing_field(F&& f) const {
-    visit_changing(*this, f);
+  void for_each_material_field(F&& f) const {
+    visit_material(*this, f);
+  }
+  template <class F>
+  void for_each_motion_field(F&& f) {
+    visit_motion(*this, f);
+  }
+  template <class F>
+  void for_each_motion_field(F&& f) const {
+    visit_motion(*this, f);
   }
 
   std::size_t bytes_per_particle() const {
@@ -86,11 +95,16 @@ struct Particles {
     f(std::string("id"), self.id);
   }
   template <class Self, class F>
-  static void visit_changing(Self& self, F& f) {
+  static void visit_material(Self& self, F& f) {
     for (auto& array : self.position) f(array);
-    for (auto* arrays : {&self.velocity, &self.affine, &self.history, &self.dilation})
-      for (auto& array : *arrays) f(array);
     f(self.compression);
+    for (auto* arrays : {&self.history, &self.dilation})
+      for (auto& array : *arrays) f(array);
+  }
+  template <class Self, class F>
+  static void visit_motion(Self& self, F& f) {
+    for (auto* arrays : {&self.velocity, &self.affine})
+      for (auto& array : *arrays) f(array);
   }
 };
 

@@ -94,6 +94,7 @@ class Ballistic : public Solver {
   double bytes_per_particle() const override { return 32; }
   PhaseSeconds phase_seconds() const override { return {}; }
   std::size_t active_blocks() const override { return 1; }
+  std::uint64_t sorts() const override { return 0; }
 
   double fails_at = std::numeric_limits<double>::infinity();
   int steps = 0;

@@ -45,7 +45,7 @@ double mismatch(const Model& model, double dt, int before) {
   ReversibleStep<double, Dim> solver(model);
   for (int k = 0; k < before; ++k) solver.step(dt);
   std::vector<std::byte> numbers(solver.kept_bytes());
-  const std::unique_ptr<KeptState> start = solver.keep(numbers.data());
+  const std::unique_ptr<KeptState> start = solver.keep(numbers.data(), false);
   std::mt19937_64 random(5);
   std::normal_distribution<double> normal;
   ReferenceState<Number> state = state_of<Dim>(model, solver.particles());
@@ -65,8 +65,8 @@ double mismatch(const Model& model, double dt, int before) {
       bar = w / scale;
       Jv_w += slow.derivative[0] * bar, Jv2 += std::pow(slow.derivative[0] / scale, 2), w2 += w * w;
     });
-  solver.go_back(*start, numbers.data());
   solver.step_adjoint(dt, *start, numbers.data());
+  solver.end_reverse();
   double v_Jtw = 0;
   for (std::size_t b = 0; b < direction.size(); ++b) {
     std::vector<double> v;

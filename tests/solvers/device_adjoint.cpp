@@ -39,17 +39,17 @@ ModelGradient gradient_of(Stepper& stepper, const Model& model, std::size_t& kin
   std::vector<std::unique_ptr<KeptState>> kept;
   for (int k = 0; k < steps; ++k) {
     numbers.emplace_back(stepper.kept_bytes());
-    kept.push_back(stepper.keep(numbers.back().data()));
+    kept.push_back(stepper.keep(numbers.back().data(), false));
     stepper.step(dt);
   }
   stepper.start_reverse();
   stepper.add_gradient(random_loss(model, 1));
   for (std::size_t k = steps; k-- > 0;) {
-    stepper.go_back(*kept[k], numbers[k].data());
     stepper.step_adjoint(dt, *kept[k], numbers[k].data());
     stepper.go_back(*kept[k], numbers[k].data());
     if (k == steps / 2) stepper.add_gradient(random_loss(model, 2));
   }
+  stepper.end_reverse();
   kinks = stepper.at_kinks();
   return stepper.gradient();
 }

@@ -79,60 +79,124 @@ JAXMPM_INLINE void update_particles_adjoint(const Particles<typename Sch::T, Sch
     for (int k = 0; k < Dim; ++k) by(from + k, c) += rate * (P::load(by_H[c * Dim + k]) + (c == k ? by_next : P(T(0))));
 }
 
-/// Adjoint of g2p_tile. `velocities`: the arena that the tile gathered from; `arena` is cleared and receives the derivatives by it.
+/// Adjoint of g2p_tile, a batch after the other. The arena is cleared and receives the derivatives by the nodes, once all batches are done.
 template <class Sch>
-void g2p_adjoint_tile(const Particles<typename Sch::T, Sch::Dim>& p, std::size_t begin, std::size_t end,
-                      const MaterialAdjoint<typename Sch::T, Sch::Dim>& material, const StepConstants<typename Sch::T>& step,
-                      const Index<Sch::Dim>& origin, const DomainBounds<Sch::Dim>& domain, const typename Sch::T* velocities,
-                      typename Sch::T* arena, Particles<typename Sch::T, Sch::Dim>& bar, AdjointReport& report) {
+class G2pAdjoint {
   using T = typename Sch::T;
   using G = GatheredGroups<Sch>;
   using Rows = StencilRows<Sch, false>;
-  using R = typename Rows::R;
-  constexpr int W = batch<T>;
-  constexpr int moments = Sch::g2p_moments ? G::moments : -1, slopes = Sch::g2p_slopes ? G::slopes : -1;
-  std::memset(arena, 0, sizeof(T) * Sch::arena_size);
-  Rows rows[Sch::planes], by_rows[Sch::planes];
-  for (auto& r : rows) r.clear();
-  for (auto& r : by_rows) r.clear();
-  int current = -1, loaded = -1;  // base nodes of by_rows and of rows
-  const auto flush = [&] {
-    for (int plane = 0; plane < Sch::planes; ++plane) by_rows[plane].add_to(arena + plane * Sch::arena_plane + current * 4);
+  using Stencil = Stencils<Sch, Sch::g2p_moments, Sch::g2p_slopes, true>;
+  static constexpr int Dim = Sch::Dim, W = batch<T>;
+
+ public:
+  /// What a batch gathered in the step.
+  struct Batch {
+    Stencil t;
+    ParticleRows<T, G::V * G::padded> rows;
+    Pack<T, W> gathered[decltype(rows)::stride];
+    Batch(const Particles<T, Dim>& p, std::size_t s, int count, const Index<Dim>& origin) : t(p, s, count, origin) {}
   };
-  for_each_batch<T>(begin, end, [&](std::size_t s, int count) JAXMPM_INLINE_LAMBDA {
-    const Stencils<Sch, Sch::g2p_moments, Sch::g2p_slopes, true> t(p, s, count, origin);
-    ParticleRows<T, G::V * G::padded> gathered;
-    gather_batch<Sch>(t, count, velocities, rows, loaded, gathered);
-    Pack<T, W> packs[decltype(gathered)::stride], bars[decltype(gathered)::stride];
-    gathered.read(packs);
+
+  /// `velocities`: the arena that the tile gathered from.
+  G2pAdjoint(const MaterialAdjoint<T, Dim>& material, const StepConstants<T>& step, const Index<Dim>& origin,
+             const DomainBounds<Dim>& domain, const T* velocities, T* arena)
+      : material_(material), step_(step), origin_(origin), domain_(domain), velocities_(velocities), arena_(arena) {
+    std::memset(arena, 0, sizeof(T) * Sch::arena_size);
+    for (auto& r : rows_) r.clear();
+    for (auto& r : by_rows_) r.clear();
+  }
+
+  /// Gathers again for `count` particles from s, whose state at the start of the step is p.
+  template <class Count>
+  JAXMPM_ONCE Batch gather(const Particles<T, Dim>& p, std::size_t s, Count count) {
+    Batch batch(p, s, count, origin_);
+    gather_batch<Sch>(batch.t, count, velocities_, rows_, loaded_, batch.rows);
+    batch.rows.read(batch.gathered);
+    return batch;
+  }
+
+  template <class Count>
+  JAXMPM_ONCE void reverse(Batch& batch, const Particles<T, Dim>& p, std::size_t s, Count count, Particles<T, Dim>& bar,
+                           AdjointReport& report) {
+    constexpr int moments = Sch::g2p_moments ? G::moments : -1, slopes = Sch::g2p_slopes ? G::slopes : -1;
+    const Stencil& t = batch.t;
+    Pack<T, W> bars[decltype(batch.rows)::stride];
     for (auto& b : bars) b = Pack<T, W>(T(0));
-    update_particles_adjoint<Sch>(p, s, count, packs, material, step, domain, bar, bars, report);
-    gathered.fill(bars);
+    update_particles_adjoint<Sch>(p, s, count, batch.gathered, material_, step_, domain_, bar, bars, report);
+    batch.rows.fill(bars);
 
     PlaceSums<Sch> by_place;
     for (int l = 0; l < count; ++l) {
-      if (t.base[l] != current) {
-        if (current >= 0) flush();
-        for (auto& r : by_rows) r.clear();
-        current = t.base[l];
+      if (t.base[l] != current_) {
+        flush();
+        for (auto& r : by_rows_) r.clear();
+        current_ = t.base[l];
       }
-      if (t.base[l] != loaded) {
-        loaded = t.base[l];
-        for (int plane = 0; plane < Sch::planes; ++plane) rows[plane].load(velocities + plane * Sch::arena_plane + loaded * 4);
-      }
-      R place[PlaceSums<Sch>::padded];
-      for (R& x : place) x = R(T(0));
-      scatter<Sch, G::value, moments, slopes>(by_rows[0], t, l, gathered.row(l));
-      contract<Sch, G::value, moments, slopes>(rows[0], t, l, gathered.row(l), place, nullptr);
+      load(t.base[l]);
+      typename Rows::R place[PlaceSums<Sch>::padded];
+      for (auto& x : place) x = typename Rows::R(T(0));
+      scatter<Sch, G::value, moments, slopes>(by_rows_[0], t, l, batch.rows.row(l));
+      contract<Sch, G::value, moments, slopes>(rows_[0], t, l, batch.rows.row(l), place, nullptr);
       if constexpr (Sch::planes == 2) {
-        scatter<Sch, G::change, -1, -1>(by_rows[1], t, l, gathered.row(l));
-        contract<Sch, G::change, -1, -1>(rows[1], t, l, gathered.row(l), place, nullptr);
+        scatter<Sch, G::change, -1, -1>(by_rows_[1], t, l, batch.rows.row(l));
+        contract<Sch, G::change, -1, -1>(rows_[1], t, l, batch.rows.row(l), place, nullptr);
       }
       by_place.put(l, place);
     }
     by_place.add_to(bar, s, count);
+  }
+
+  /// Once all batches are done.
+  void flush() {
+    for (int plane = 0; current_ >= 0 && plane < Sch::planes; ++plane)
+      by_rows_[plane].add_to(arena_ + plane * Sch::arena_plane + current_ * 4);
+  }
+
+ private:
+  JAXMPM_INLINE void load(int base) {
+    if (base == loaded_) return;
+    loaded_ = base;
+    for (int plane = 0; plane < Sch::planes; ++plane) rows_[plane].load(velocities_ + plane * Sch::arena_plane + loaded_ * 4);
+  }
+
+  const MaterialAdjoint<T, Dim>& material_;
+  const StepConstants<T>& step_;
+  const Index<Dim>& origin_;
+  const DomainBounds<Dim>& domain_;
+  const T* velocities_;
+  T* arena_;
+  Rows rows_[Sch::planes], by_rows_[Sch::planes];
+  int current_ = -1, loaded_ = -1;  // base nodes of by_rows_ and of rows_
+};
+
+/// Adjoint of grid to particles for particles [begin, end).
+template <class Sch>
+void g2p_adjoint_tile(const Particles<typename Sch::T, Sch::Dim>& p, std::size_t begin, std::size_t end, G2pAdjoint<Sch> g2p,
+                      Particles<typename Sch::T, Sch::Dim>& bar, AdjointReport& report) {
+  for_each_batch<typename Sch::T>(begin, end, [&](std::size_t s, auto count) {
+    auto batch = g2p.gather(p, s, count);
+    g2p.reverse(batch, p, s, count, bar, report);
   });
-  if (current >= 0) flush();
+  g2p.flush();
+}
+
+/// Adjoint of particles to grid in a step, and then of grid to particles in the step before it: `p` is the state in between, `before` that at
+/// the start of the earlier step. What `p` moves with is gathered again, and need not have been kept.
+template <class Sch>
+void between_steps_adjoint_tile(Particles<typename Sch::T, Sch::Dim>& p, const Particles<typename Sch::T, Sch::Dim>& before,
+                                std::size_t begin, std::size_t end, P2gAdjoint<Sch> p2g, G2pAdjoint<Sch> g2p,
+                                const StepConstants<typename Sch::T>& earlier, Particles<typename Sch::T, Sch::Dim>& bar,
+                                MaterialReport& p2g_report, AdjointReport& g2p_report) {
+  using G = GatheredGroups<Sch>;
+  static_assert(!Sch::flip && !Sch::dilation, "what they move with is not all gathered");
+  for_each_batch<typename Sch::T>(begin, end, [&](std::size_t s, auto count) {
+    auto batch = g2p.gather(before, s, count);
+    for (int c = 0; c < Sch::Dim; ++c) store(p.velocity[std::size_t(c)].data() + s, batch.gathered[G::component(G::value, c)], count);
+    store_affine<Sch>(p, s, count, batch.gathered, earlier);
+    p2g.reverse(p, s, count, bar, p2g_report);
+    g2p.reverse(batch, before, s, count, bar, g2p_report);
+  });
+  g2p.flush();
 }
 
 }  // namespace jaxmpm

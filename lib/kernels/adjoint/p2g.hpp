@@ -101,31 +101,34 @@ JAXMPM_INLINE void coefficients_adjoint(const Particles<typename Sch::T, Sch::Di
   material_adjoint.stress(p, s, count, by_sigma, bar, report);
 }
 
-/// Adjoint of p2g_tile: adds to `bar` what the derivatives by the nodes' sums, in `arena` ({m̄, p̄}, and {–, impulse} of a second plane),
-/// bring.
+/// Adjoint of p2g_tile, a batch after the other: adds to `bar` what the derivatives by the nodes' sums, in `arena` ({m̄, p̄}, and {–, impulse}
+/// of a second plane), bring.
 template <class Sch>
-void p2g_adjoint_tile(const Particles<typename Sch::T, Sch::Dim>& p, std::size_t begin, std::size_t end,
-                      const MaterialKernel<typename Sch::T, Sch::Dim>& material,
-                      const MaterialAdjoint<typename Sch::T, Sch::Dim>& material_adjoint, const StepConstants<typename Sch::T>& step,
-                      const Index<Sch::Dim>& origin, const typename Sch::T* arena, Particles<typename Sch::T, Sch::Dim>& bar,
-                      MaterialReport& report) {
+class P2gAdjoint {
   using T = typename Sch::T;
   using Q = Coefficients<Sch>;
-  using R = typename StencilRows<Sch, true>::R;
   using G = GatheredBars<Sch>;
-  constexpr int W = batch<T>;
-  StencilRows<Sch, true> rows[Sch::planes];
-  for (auto& r : rows) r.clear();
-  int current = -1;
-  for_each_batch<T>(begin, end, [&](std::size_t s, int count) JAXMPM_INLINE_LAMBDA {
-    const Stencils<Sch, G::with_d, G::with_g, true> t(p, s, count, origin);
-    const Q q(p, s, count, material, step);
+  using Rows = StencilRows<Sch, true>;
+  static constexpr int Dim = Sch::Dim, W = batch<T>;
+
+ public:
+  P2gAdjoint(const MaterialKernel<T, Dim>& material, const MaterialAdjoint<T, Dim>& material_adjoint, const StepConstants<T>& step,
+             const Index<Dim>& origin, const T* arena)
+      : material_(material), material_adjoint_(material_adjoint), step_(step), origin_(origin), arena_(arena) {
+    for (auto& r : rows_) r.clear();
+  }
+
+  template <class Count>
+  JAXMPM_ONCE void reverse(const Particles<T, Dim>& p, std::size_t s, Count count, Particles<T, Dim>& bar, MaterialReport& report) {
+    using R = typename Rows::R;
+    const Stencils<Sch, G::with_d, G::with_g, true> t(p, s, count, origin_);
+    const Q q(p, s, count, material_, step_);
     ParticleRows<T, G::V * G::padded> gathered;
     PlaceSums<Sch> by_place;
     for (int l = 0; l < count; ++l) {
-      if (t.base[l] != current) {
-        current = t.base[l];
-        for (int plane = 0; plane < Sch::planes; ++plane) rows[plane].load(arena + plane * Sch::arena_plane + current * 4);
+      if (t.base[l] != loaded_) {
+        loaded_ = t.base[l];
+        for (int plane = 0; plane < Sch::planes; ++plane) rows_[plane].load(arena_ + plane * Sch::arena_plane + loaded_ * 4);
       }
       R sums[G::padded], place[PlaceSums<Sch>::padded];
       for (int i = G::count; i < G::padded; ++i) sums[i] = R(T(0));
@@ -134,9 +137,9 @@ void p2g_adjoint_tile(const Particles<typename Sch::T, Sch::Dim>& p, std::size_t
         constexpr bool full = G::full(plane);
         constexpr PlaneQuads of = Q::in_plane(plane);
         static_assert((full && G::with_d) == (of.moments >= 0) && (full && G::with_g) == (of.slopes >= 0));
-        contract<Sch, of.rest, of.moments, of.slopes>(rows[plane], t, l, q.rows.row(l), place, sums + G::first(plane));
+        contract<Sch, of.rest, of.moments, of.slopes>(rows_[plane], t, l, q.rows.row(l), place, sums + G::first(plane));
       });
-      if constexpr (G::V == 2) contract_mass<Sch>(rows[0], t, l, q.mass[l], place, sums[G::mass]);
+      if constexpr (G::V == 2) contract_mass<Sch>(rows_[0], t, l, q.mass[l], place, sums[G::mass]);
       for (int i = 0; i < G::padded; i += G::per_store) sum_groups<G::V>(sums + i).store(gathered.row(l) + G::V * i);
       by_place.put(l, place);
     }
@@ -144,8 +147,24 @@ void p2g_adjoint_tile(const Particles<typename Sch::T, Sch::Dim>& p, std::size_t
     Pack<T, W> packs[decltype(gathered)::stride];
     gathered.read(packs);
     by_place.add_to(bar, s, count);
-    coefficients_adjoint<Sch>(p, s, count, packs, material, material_adjoint, step, bar, report);
-  });
+    coefficients_adjoint<Sch>(p, s, count, packs, material_, material_adjoint_, step_, bar, report);
+  }
+
+ private:
+  const MaterialKernel<T, Dim>& material_;
+  const MaterialAdjoint<T, Dim>& material_adjoint_;
+  const StepConstants<T>& step_;
+  const Index<Dim>& origin_;
+  const T* arena_;
+  Rows rows_[Sch::planes];
+  int loaded_ = -1;  // base node of rows_
+};
+
+/// Adjoint of particles to grid for particles [begin, end).
+template <class Sch>
+void p2g_adjoint_tile(const Particles<typename Sch::T, Sch::Dim>& p, std::size_t begin, std::size_t end, P2gAdjoint<Sch> p2g,
+                      Particles<typename Sch::T, Sch::Dim>& bar, MaterialReport& report) {
+  for_each_batch<typename Sch::T>(begin, end, [&](std::size_t s, auto count) { p2g.reverse(p, s, count, bar, report); });
 }
 
 }  // namespace jaxmpm

@@ -16,6 +16,17 @@ struct AdjointKernels {
   void (*p2g)(const Particles<T, Dim>&, const Tile&, const Blocks<Dim>&, const T* by_sums, const MaterialKernel<T, Dim>&,
               const MaterialAdjoint<T, Dim>&, const StepConstants<T>&, const Index<Dim>& origin, Particles<T, Dim>& bar,
               MaterialReport&) = nullptr;
+  /// Both, of a step (`after`) and of the one before it (`before`), as between_steps_adjoint_tile() does it; null where a step does not
+  /// gather all that particles move with (FLIP, averaged volumes).
+  struct Between {
+    const StepConstants<T>&after, &before;
+    const T *by_sums, *grid;  // derivatives by the sums of the later step, velocities of the earlier one
+    MaterialReport& p2g;
+    AdjointReport& g2p;
+  };
+  void (*between_steps)(Particles<T, Dim>&, const Particles<T, Dim>& before, const Tile&, const Blocks<Dim>&, const MaterialKernel<T, Dim>&,
+                        const MaterialAdjoint<T, Dim>&, const Index<Dim>& origin, const DomainBounds<Dim>&, T* arena,
+                        Particles<T, Dim>& bar, const Between&) = nullptr;
 };
 
 /// The adjoint kernels of a method. Defined per precision, dimension and spline in kernels/adjoint/adjoint_*.cpp.
