@@ -60,10 +60,10 @@ class Reversal {
         stop_(stop),
         walk_(solver.forward(), steps, observer, stop),
         snapshots_(plan.snapshots),
-        lean_(plan.lean),
+        lean_(plan.lean > 0),
         numbers_(stack) {
     solver.expect_blocks(steps.most_blocks);
-    numbers_.prepare(solver.kept_bytes(), {plan.snapshots - plan.on_disk, plan.on_disk, lean_ ? solver.lean_bytes() : 0});
+    numbers_.prepare(solver.kept_bytes(), {plan.snapshots - plan.on_disk, plan.on_disk, plan.lean, solver.lean_bytes()});
     keep(0);
   }
 
@@ -172,17 +172,17 @@ Split split_snapshots(const ReversibleSolver& solver, std::size_t wanted, const 
   return split;
 }
 
-/// Memory for all states of a run where most are lean: the first one is not, nor those before and after a sort. They are counted as of the
-/// recorded run with a good margin, since the unknowns of an inversion change how often particles are sorted.
-std::size_t bytes_of_lean_run(const ReversibleSolver& solver, const StepSequence& steps) {
-  const std::size_t whole = std::min<std::size_t>(steps.dt.size(), 8 + 3 * std::size_t(steps.sorts));
-  return whole * (solver.kept_bytes() + solver.shared_bytes()) + (steps.dt.size() - whole) * solver.lean_bytes();
+/// How many of all states of a run can be lean: the first one is not, nor those before and after a sort. They are counted as of the recorded
+/// run with a good margin, since the unknowns of an inversion change how often particles are sorted.
+std::size_t lean_states(const ReversibleSolver& solver, const StepSequence& steps) {
+  const std::size_t whole = 8 + 3 * std::size_t(steps.sorts);
+  return solver.lean_bytes() < solver.kept_bytes() && steps.dt.size() > whole ? steps.dt.size() - whole : 0;
 }
 
 /// The adjoint of one step, after which a stepper has all its memory.
 void try_adjoint(ReversibleSolver& solver, Backend backend, double dt) {
   SnapshotPool pool(make_state_memory(backend));
-  pool.prepare(solver.kept_bytes(), 1);
+  pool.prepare(solver.kept_bytes(), 1, 1);
   std::byte* numbers = pool.take();
   const std::unique_ptr<KeptState> kept = solver.keep(numbers, false);
   solver.start_reverse();
@@ -245,10 +245,11 @@ MemoryPlan plan_gradient(const Model& model, const StepSequence& steps, const Ro
   const std::size_t fixed = used - std::min(stack.memory_bytes(), used) + 4 * plan.snapshot_bytes;
   constexpr std::size_t least = 2;
   const std::size_t wanted = std::max<std::size_t>(plan.steps, 1);
-  const std::size_t left = room.memory - std::min(fixed, room.memory), lean_run = bytes_of_lean_run(*solver, steps);
-  if (solver->lean_bytes() < solver->kept_bytes() && plan.steps > 0 && lean_run <= left) {
-    plan.lean = true, plan.snapshots = plan.steps;
-    plan.snapshot_bytes = lean_run / plan.steps, plan.peak_bytes = fixed + lean_run;
+  const std::size_t left = room.memory - std::min(fixed, room.memory), lean = lean_states(*solver, steps);
+  const std::size_t all = lean * solver->lean_bytes() + (plan.steps - lean) * plan.snapshot_bytes;
+  if (lean > 0 && all <= left) {
+    plan.lean = lean, plan.snapshots = plan.steps;
+    plan.snapshot_bytes = all / plan.steps, plan.peak_bytes = fixed + all;
     return plan;
   }
   const Split split = split_snapshots(*solver, wanted, {left, room.disk});

@@ -25,7 +25,7 @@ struct Room {
 /// What a gradient costs, known before it starts.
 struct MemoryPlan {
   std::size_t steps = 0, snapshots = 0, on_disk = 0;  // snapshots kept at once, those on disk included
-  bool lean = false;                                  // all states are kept, in memory, and most are lean
+  std::size_t lean = 0;                               // of them, about, where all states are kept and in memory
   std::size_t snapshot_bytes = 0, peak_bytes = 0, disk_bytes = 0;
   double recomputed_steps = 0;  // forward steps besides the first pass
 };

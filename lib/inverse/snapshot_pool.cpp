@@ -11,10 +11,10 @@ constexpr std::size_t chunk_bytes = std::size_t(32) << 20;
 
 }  // namespace
 
-void SnapshotPool::prepare(std::size_t bytes, std::size_t most) {
+void SnapshotPool::prepare(std::size_t bytes, std::size_t most, std::size_t expected) {
   bytes = (bytes + line - 1) / line * line;
-  if (bytes != block_bytes_) chunks_.clear(), free_.clear(), blocks_ = 0;
-  block_bytes_ = bytes, most_ = most;
+  if (bytes != block_bytes_ || blocks_ > expected) chunks_.clear(), free_.clear(), blocks_ = 0;
+  block_bytes_ = bytes, most_ = most, expected_ = expected;
 }
 
 std::byte* SnapshotPool::take() {
@@ -26,7 +26,8 @@ std::byte* SnapshotPool::take() {
 
 void SnapshotPool::add_chunk() {
   if (blocks_ >= most_) throw std::logic_error("more snapshots than planned");
-  const std::size_t count = std::min(std::max<std::size_t>(chunk_bytes / block_bytes_, 1), most_ - blocks_);
+  const std::size_t wanted = blocks_ < expected_ ? expected_ - blocks_ : 1;
+  const std::size_t count = std::min(std::max<std::size_t>(chunk_bytes / block_bytes_, 1), wanted);
   chunks_.emplace_back(memory_->take(count * block_bytes_), Release{memory_.get()});
   for (std::size_t k = count; k-- > 0;) free_.push_back(chunks_.back().get() + k * block_bytes_);
   blocks_ += count;

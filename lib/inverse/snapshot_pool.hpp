@@ -12,9 +12,9 @@ namespace jaxmpm {
 class SnapshotPool {
  public:
   explicit SnapshotPool(std::shared_ptr<StateMemory> memory) : memory_(std::move(memory)) {}
-  /// Blocks of `bytes` from now on, at most `most` of them at once. None may be in use. Keeps the memory of before when the size is the
-  /// same.
-  void prepare(std::size_t bytes, std::size_t most);
+  /// Blocks of `bytes` from now on, at most `most` of them at once; memory is taken in large pieces for `expected` of them, and for one after
+  /// the other beyond. None may be in use. Keeps the memory of before when the size is the same and it is not too much.
+  void prepare(std::size_t bytes, std::size_t most, std::size_t expected);
   std::byte* take();
   void give_back(std::byte* block) { free_.push_back(block); }
   /// Bytes taken from the system.
@@ -29,7 +29,7 @@ class SnapshotPool {
   void add_chunk();
 
   std::shared_ptr<StateMemory> memory_;
-  std::size_t block_bytes_ = 0, most_ = 0, blocks_ = 0;
+  std::size_t block_bytes_ = 0, most_ = 0, expected_ = 0, blocks_ = 0;
   std::vector<std::unique_ptr<std::byte, Release>> chunks_;
   std::vector<std::byte*> free_;
 };

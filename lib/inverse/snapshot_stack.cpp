@@ -6,8 +6,8 @@ namespace jaxmpm {
 
 void SnapshotStack::prepare(std::size_t bytes, const SnapshotRoom& room) {
   while (!blocks_.empty()) pop();
-  pool_.prepare(bytes, room.in_memory);
-  lean_pool_.prepare(room.lean_bytes, room.lean_bytes > 0 ? room.in_memory : 0);
+  pool_.prepare(bytes, room.in_memory, room.in_memory - room.lean);
+  lean_pool_.prepare(room.lean > 0 ? room.lean_bytes : 0, room.in_memory, room.lean);
   file_.prepare(bytes, room.on_disk);
   passing_.resize(room.on_disk > 0 ? bytes : 0);
   in_memory_ = room.in_memory;

@@ -8,7 +8,7 @@ namespace jaxmpm {
 /// How many snapshots of a run there is room for, and where. Where all are in memory, some may be lean: of fewer bytes.
 struct SnapshotRoom {
   std::size_t in_memory = 1, on_disk = 0;  // in_memory ≥ 1
-  std::size_t lean_bytes = 0;              // 0: none is lean
+  std::size_t lean = 0, lean_bytes = 0;    // how many are, about
 };
 
 /// When memory is full, a new snapshot sends the oldest one in memory to the disk; one that comes to be the newest is fetched back. What

@@ -70,7 +70,7 @@ Model scene(int dim, deck::Transfer transfer, const deck::Material& first, const
 ModelGradient gradient_of(const Model& model, const StepSequence& steps, Observer& observer, std::size_t snapshots, std::size_t on_disk = 0,
                           bool lean = false) {
   MemoryPlan plan;
-  plan.steps = steps.dt.size(), plan.snapshots = snapshots, plan.on_disk = on_disk, plan.lean = lean;
+  plan.steps = steps.dt.size(), plan.snapshots = snapshots, plan.on_disk = on_disk, plan.lean = lean ? snapshots / 2 : 0;
   RunCost cost;
   SnapshotStack stack(make_state_memory(Backend::cpu));
   return differentiate_run(model, steps, observer, plan, stack, cost, {});

@@ -29,7 +29,7 @@ bool top_is(SnapshotStack& stack, std::byte mark) {
 TEST_CASE("lean snapshots lie in memory of their own") {
   SnapshotStack stack(make_state_memory(Backend::cpu));
   constexpr std::size_t lean = 192;
-  stack.prepare(bytes, {4, 0, lean});
+  stack.prepare(bytes, {4, 0, 2, lean});
   push(stack, std::byte{1});
   for (const int mark : {2, 3}) std::fill_n(stack.push(true), lean, std::byte(mark));
   push(stack, std::byte{4});
@@ -41,9 +41,11 @@ TEST_CASE("lean snapshots lie in memory of their own") {
   stack.pop();
   CHECK(top_is(stack, std::byte{1}));
   const std::size_t taken = stack.memory_bytes();
-  stack.prepare(bytes, {4, 0, lean});
+  stack.prepare(bytes, {4, 0, 2, lean});
   for (const bool is_lean : {false, true, true, false}) stack.push(is_lean);
   CHECK(stack.memory_bytes() == taken);  // the same memory again
+  stack.prepare(bytes, {2, 0});
+  CHECK(stack.memory_bytes() < taken);  // what lean ones had is given back
 }
 
 TEST_CASE("a stack of snapshots gives back what was pushed, whichever of them are on disk") {
