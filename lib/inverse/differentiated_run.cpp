@@ -49,6 +49,13 @@ class Walk {
   std::size_t next_look_ = 0;
 };
 
+/// Blocks of the grid that kept states have room for: where sums do not fit, states are whole or steps scatter again, so a few more than in
+/// the recorded run.
+std::size_t expected_blocks(const StepSequence& steps) { return steps.most_blocks + steps.most_blocks / 8; }
+
+/// Thrown where more states are whole than were planned.
+struct TooManyWhole {};
+
 /// The reverse run: a stack of kept states, the newest below the step that is reversed next.
 class Reversal {
  public:
@@ -61,8 +68,9 @@ class Reversal {
         walk_(solver.forward(), steps, observer, stop),
         snapshots_(plan.snapshots),
         lean_(plan.lean > 0),
+        whole_left_(plan.snapshots - plan.lean),
         numbers_(stack) {
-    solver.expect_blocks(steps.most_blocks);
+    solver.expect_blocks(expected_blocks(steps));
     numbers_.prepare(solver.kept_bytes(), {plan.snapshots - plan.on_disk, plan.on_disk, plan.lean, solver.lean_bytes()});
     keep(0);
   }
@@ -105,6 +113,7 @@ class Reversal {
 
   void keep(std::size_t state) {
     const bool lean = lean_ && solver_.may_be_lean();
+    if (!lean && lean_ && whole_left_-- == 0) throw TooManyWhole{};
     kept_.push_back({state, solver_.keep(numbers_.push(lean), lean)});
     present_ = state;
   }
@@ -145,6 +154,7 @@ class Reversal {
   Walk walk_;
   std::size_t snapshots_, present_ = 0;
   bool lean_;
+  std::size_t whole_left_;
   std::vector<Snapshot> kept_;
   SnapshotStack& numbers_;  // of kept_
 };
@@ -234,21 +244,24 @@ void replay_run(const Model& model, Backend backend, const StepSequence& steps, 
 MemoryPlan plan_gradient(const Model& model, const StepSequence& steps, const Room& room, const SnapshotStack& stack) {
   const StateMemory& memory = stack.memory();
   const std::unique_ptr<ReversibleSolver> solver = make_reversible_solver(model, memory.backend());
-  solver->expect_blocks(steps.most_blocks);
+  solver->expect_blocks(expected_blocks(steps));
   if (!steps.dt.empty()) try_adjoint(*solver, memory.backend(), steps.dt[0]);
   MemoryPlan plan;
   plan.steps = steps.dt.size();
   plan.snapshot_bytes = solver->kept_bytes() + solver->shared_bytes();
-  // Besides snapshots: the program as it stands, with this stepper in it and less the stack's memory, and what the observer sees, the
-  // gradient, and blocks that the material has yet to reach: less than four states, as measured.
-  const std::size_t used = memory.used();
-  const std::size_t fixed = used - std::min(stack.memory_bytes(), used) + 4 * plan.snapshot_bytes;
+  // Besides snapshots: the program as it stands, with this stepper in it and less the stack's memory, blocks that the material has yet to
+  // reach, and what the observer sees and the gradient: less than four states, as measured.
+  const std::size_t used = memory.used(), now = solver->forward().active_blocks();
+  const std::size_t to_come = (std::max(steps.most_blocks, now) - now) * solver->block_bytes();
+  const std::size_t fixed = used - std::min(stack.memory_bytes(), used) + to_come + 4 * plan.snapshot_bytes;
   constexpr std::size_t least = 2;
   const std::size_t wanted = std::max<std::size_t>(plan.steps, 1);
   const std::size_t left = room.memory - std::min(fixed, room.memory), lean = lean_states(*solver, steps);
   const std::size_t all = lean * solver->lean_bytes() + (plan.steps - lean) * plan.snapshot_bytes;
   if (lean > 0 && all <= left) {
     plan.lean = lean, plan.snapshots = plan.steps;
+    const Split whole = split_snapshots(*solver, plan.steps, {left, room.disk});
+    plan.whole_snapshots = whole.all(), plan.whole_on_disk = whole.on_disk;
     plan.snapshot_bytes = all / plan.steps, plan.peak_bytes = fixed + all;
     return plan;
   }
@@ -269,8 +282,21 @@ MemoryPlan plan_gradient(const Model& model, const StepSequence& steps, const Ro
 
 ModelGradient differentiate_run(const Model& model, const StepSequence& steps, Observer& observer, const MemoryPlan& plan,
                                 SnapshotStack& stack, RunCost& cost, const std::function<bool()>& stop) {
-  const std::unique_ptr<ReversibleSolver> solver = make_reversible_solver(model, stack.memory().backend());
-  ModelGradient gradient = Reversal(*solver, steps, observer, plan, stack, stop).run(cost);
+  const auto run = [&](const MemoryPlan& as_planned) {
+    const std::unique_ptr<ReversibleSolver> solver = make_reversible_solver(model, stack.memory().backend());
+    return Reversal(*solver, steps, observer, as_planned, stack, stop).run(cost);
+  };
+  const auto run_whole = [&] {
+    MemoryPlan other = plan;
+    other.lean = 0, other.snapshots = plan.whole_snapshots, other.on_disk = plan.whole_on_disk;
+    return run(other);
+  };
+  ModelGradient gradient;
+  try {
+    gradient = run(plan);
+  } catch (const TooManyWhole&) {
+    gradient = run_whole();
+  }
   cost.measured_peak_bytes = stack.memory().most_used();
   cost.written_bytes = stack.file().written_bytes(), cost.read_bytes = stack.file().read_bytes();
   return gradient;

@@ -25,9 +25,11 @@ struct Room {
 /// What a gradient costs, known before it starts.
 struct MemoryPlan {
   std::size_t steps = 0, snapshots = 0, on_disk = 0;  // snapshots kept at once, those on disk included
-  std::size_t lean = 0;                               // of them, about, where all states are kept and in memory
+  std::size_t lean = 0;                               // of them, at least, where all states are kept and in memory
   std::size_t snapshot_bytes = 0, peak_bytes = 0, disk_bytes = 0;
   double recomputed_steps = 0;  // forward steps besides the first pass
+  /// What to do where so many cannot be lean after all, as another run sorts more often or reaches further than the recorded one.
+  std::size_t whole_snapshots = 0, whole_on_disk = 0;
 };
 
 struct RunCost {

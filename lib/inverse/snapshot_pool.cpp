@@ -13,7 +13,7 @@ constexpr std::size_t chunk_bytes = std::size_t(32) << 20;
 
 void SnapshotPool::prepare(std::size_t bytes, std::size_t most, std::size_t expected) {
   bytes = (bytes + line - 1) / line * line;
-  if (bytes != block_bytes_ || blocks_ > expected) chunks_.clear(), free_.clear(), blocks_ = 0;
+  if (bytes != block_bytes_ || touched_ > most) clear();
   block_bytes_ = bytes, most_ = most, expected_ = expected;
 }
 
@@ -21,6 +21,7 @@ std::byte* SnapshotPool::take() {
   if (free_.empty()) add_chunk();
   std::byte* block = free_.back();
   free_.pop_back();
+  touched_ = std::max(touched_, blocks_ - free_.size());  // those given back last are handed out first
   return block;
 }
 

@@ -13,12 +13,14 @@ class SnapshotPool {
  public:
   explicit SnapshotPool(std::shared_ptr<StateMemory> memory) : memory_(std::move(memory)) {}
   /// Blocks of `bytes` from now on, at most `most` of them at once; memory is taken in large pieces for `expected` of them, and for one after
-  /// the other beyond. None may be in use. Keeps the memory of before when the size is the same and it is not too much.
+  /// the other beyond. None may be in use. Keeps the memory of before when the size is the same and it is not more than `most`.
   void prepare(std::size_t bytes, std::size_t most, std::size_t expected);
   std::byte* take();
   void give_back(std::byte* block) { free_.push_back(block); }
-  /// Bytes taken from the system.
-  std::size_t bytes() const { return blocks_ * block_bytes_; }
+  /// Gives all memory back to the system.
+  void clear() { chunks_.clear(), free_.clear(), blocks_ = touched_ = 0; }
+  /// Bytes in use, or used before and kept. What has been taken from the system but not touched yet is no one's.
+  std::size_t bytes() const { return touched_ * block_bytes_; }
   const StateMemory& memory() const { return *memory_; }
 
  private:
@@ -29,7 +31,7 @@ class SnapshotPool {
   void add_chunk();
 
   std::shared_ptr<StateMemory> memory_;
-  std::size_t block_bytes_ = 0, most_ = 0, expected_ = 0, blocks_ = 0;
+  std::size_t block_bytes_ = 0, most_ = 0, expected_ = 0, blocks_ = 0, touched_ = 0;
   std::vector<std::unique_ptr<std::byte, Release>> chunks_;
   std::vector<std::byte*> free_;
 };

@@ -6,8 +6,11 @@ namespace jaxmpm {
 
 void SnapshotStack::prepare(std::size_t bytes, const SnapshotRoom& room) {
   while (!blocks_.empty()) pop();
+  const bool some_lean = room.lean > 0;
+  if (some_lean != some_lean_) pool_.clear();  // it will need another number of blocks
+  some_lean_ = some_lean;
   pool_.prepare(bytes, room.in_memory, room.in_memory - room.lean);
-  lean_pool_.prepare(room.lean > 0 ? room.lean_bytes : 0, room.in_memory, room.lean);
+  lean_pool_.prepare(some_lean ? room.lean_bytes : 0, room.in_memory, room.lean);
   file_.prepare(bytes, room.on_disk);
   passing_.resize(room.on_disk > 0 ? bytes : 0);
   in_memory_ = room.in_memory;

@@ -39,6 +39,7 @@ class SnapshotStack {
 
   SnapshotPool pool_, lean_pool_;
   SnapshotFile file_;
+  bool some_lean_ = false;
   std::size_t in_memory_ = 0;
   std::vector<std::byte> passing_;   // a snapshot on its way to or from the disk
   std::vector<std::byte*> blocks_;   // oldest first

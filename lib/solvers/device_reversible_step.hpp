@@ -19,6 +19,7 @@ class DeviceReversibleStep final : public DeviceStep<T, Dim, Space>, public Reve
   std::size_t kept_bytes() const override;
   std::size_t lean_bytes() const override { return kept_bytes(); }
   std::size_t shared_bytes() const override;
+  std::size_t block_bytes() const override { return (this->scheme_.arena_size + 4 * this->scheme_.own_size) * sizeof(T); }
   bool may_be_lean() const override { return false; }
   std::unique_ptr<KeptState> keep(std::byte* numbers, bool lean) override;
   void go_back(const KeptState& kept, const std::byte* numbers) override;

@@ -25,6 +25,8 @@ class ReversibleSolver {
   virtual std::size_t kept_bytes() const = 0;
   virtual std::size_t lean_bytes() const = 0;
   virtual std::size_t shared_bytes() const = 0;
+  /// Bytes that one more active block of the grid takes, with a tile in it.
+  virtual std::size_t block_bytes() const = 0;
   /// Whether the present state may be kept lean: without what its particles move with, as the reverse run can gather that from the state
   /// before it, the last to be kept. So it is unless particles were sorted on the way from there, or are sorted next.
   virtual bool may_be_lean() const = 0;

@@ -16,6 +16,7 @@ class ReversibleStep final : public ExplicitStep<T, Dim>, public ReversibleSolve
   std::size_t kept_bytes() const override { return particle_bytes(false) + room_for_sums_; }
   std::size_t lean_bytes() const override { return particle_bytes(adjoint_.between_steps) + room_for_sums_; }
   std::size_t shared_bytes() const override;
+  std::size_t block_bytes() const override { return (this->kernels_.arena_size + 4 * this->kernels_.own_size) * sizeof(T); }
   bool may_be_lean() const override;
   std::unique_ptr<KeptState> keep(std::byte* numbers, bool lean) override;
   void keep_sums(KeptState& kept, std::byte* numbers) override;
