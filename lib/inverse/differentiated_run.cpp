@@ -253,7 +253,8 @@ MemoryPlan plan_gradient(const Model& model, const StepSequence& steps, const Ro
   // reach, and what the observer sees and the gradient: less than four states, as measured.
   const std::size_t used = memory.used(), now = solver->forward().active_blocks();
   const std::size_t to_come = (std::max(steps.most_blocks, now) - now) * solver->block_bytes();
-  const std::size_t fixed = used - std::min(stack.memory_bytes(), used) + to_come + 4 * plan.snapshot_bytes;
+  constexpr std::size_t varying = 1 << 20;  // what is resident is not quite the same in the next run
+  const std::size_t fixed = used - std::min(stack.memory_bytes(), used) + to_come + 4 * plan.snapshot_bytes + varying;
   constexpr std::size_t least = 2;
   const std::size_t wanted = std::max<std::size_t>(plan.steps, 1);
   const std::size_t left = room.memory - std::min(fixed, room.memory), lean = lean_states(*solver, steps);
@@ -266,13 +267,13 @@ MemoryPlan plan_gradient(const Model& model, const StepSequence& steps, const Ro
     return plan;
   }
   const Split split = split_snapshots(*solver, wanted, {left, room.disk});
-  constexpr double mib = 1 << 20, varying = 1;  // MiB: what is resident is not quite the same in the next run
+  constexpr double mib = 1 << 20;
   if (split.all() < least && plan.steps > 1)
     throw Error(ExitCode::deck,
                 fmt::format("/inverse/memory: {:.1f} MiB are too few: a reverse run of this scene takes {:.1f} MiB and at least "
                             "{} snapshots of {:.2f} MiB; give it {:.0f} MiB or more",
                             double(room.memory) / mib, double(fixed) / mib, least, double(plan.snapshot_bytes) / mib,
-                            std::ceil(double(fixed + least * plan.snapshot_bytes) / mib + varying)));
+                            std::ceil(double(fixed + least * plan.snapshot_bytes + varying) / mib)));
   plan.snapshots = std::max<std::size_t>(split.all(), 1), plan.on_disk = split.on_disk;
   plan.disk_bytes = plan.on_disk * solver->kept_bytes();
   plan.peak_bytes = fixed + plan.snapshots * plan.snapshot_bytes - plan.disk_bytes;

@@ -77,6 +77,9 @@ bool Inversion::run() {
   } catch (const NumericsError&) {
     take("failed");
     throw;
+  } catch (const Error&) {
+    if (!loss_.evaluations().empty()) note_failure();
+    throw;
   }
   take(ended);
   tell_result();
@@ -86,6 +89,15 @@ bool Inversion::run() {
 void Inversion::take(const std::string& stopped) {
   state_.stopped = stopped;
   directory_.write(state_);
+}
+
+/// Of the disk or of memory, in the midst of the inversion: that error is the one to tell.
+void Inversion::note_failure() {
+  try {
+    take("failed");
+  } catch (const Error&) {
+    return;
+  }
 }
 
 void Inversion::tell_evaluation() {

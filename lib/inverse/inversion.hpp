@@ -18,6 +18,7 @@ class Inversion {
 
  private:
   void take(const std::string& stopped);
+  void note_failure();
   void tell_evaluation();
   void find_standard_errors();
   void compare_with_data();

@@ -319,6 +319,22 @@ class Gradient(InverseTest):
         self.assertAlmostEqual(gradient["seconds_per_1000_steps"], 20 * (gradient["forward_seconds"] + gradient["reverse_seconds"]))
         self.assertLessEqual(gradient["measured_peak_bytes"], 4 << 30)
 
+    def test_memory_of_an_inversion_stays_below_the_budget(self):
+        """Gradient after gradient, as much as the first or a little less than all states take, also where time steps vary."""
+        domain = {"min": [0, 0], "max": [1.0, 0.5], "cell_size": 0.0125}
+        self.run_deck(self.write(scene(**TRUTH, domain=domain), "fine.json"), "fine")
+        seen = [{"kind": "particles", "body": "water", "field": "position", "file": "fine/results.h5", "from_time": 0.01}]
+        for step in ({"step": 4e-4}, {"cfl": 0.2}):
+            deck = self.write(scene(0.1, 0.05, domain=domain, time={"end": 0.1, **step}, inverse=inverse(observations=seen, method="adam", learning_rate=0.02, iterations=6)), "invert.json")
+            self.invert(deck, "plenty", "--overwrite")
+            most = self.result("plenty")["gradient_peak_bytes"]
+            for budget in (most / 2**20 + 3, most / 2**20 - 4):
+                said = self.invert(deck, "tight", "--overwrite", "--set", f"/inverse/memory={budget:.2f} MiB")
+                predicted = float(re.search(r"predicted peak ([0-9.]+) MiB", said).group(1))
+                found = self.result("tight")
+                self.assertEqual(len(found["iterations"]), 6)
+                self.assertLessEqual(found["gradient_peak_bytes"] / 2**20, budget, f"predicted {predicted}")
+
     def test_memory_stays_below_the_budget_with_snapshots_on_disk(self):
         deck, budget = self.write(scene(0.1, 0.05, domain={"min": [0, 0], "max": [1.0, 0.5], "cell_size": 0.01}, inverse=inverse())), 64 << 20
         done = self.call("bench", deck, "--steps", "200", "--gradient", "--json", "--threads", "1", "--set", "/inverse/memory=64 MiB", "--set", "/inverse/disk=1 GiB")
