@@ -347,7 +347,7 @@ TEST_CASE("a gradient has the same bits whatever memory and disk it is given, wh
   model.method.precision = GENERATE(deck::Precision::f64, deck::Precision::f32);
   model.method.gradient = GENERATE(deck::GradientForm::spline, deck::GradientForm::mls);
   CAPTURE(int(transfer), dim, int(model.method.precision), int(model.method.gradient));
-  if (dim == 3 && (transfer != deck::Transfer::apic || model.method.gradient == deck::GradientForm::mls)) return;  // it takes a while
+  if (dim == 3 && (transfer != deck::Transfer::apic || model.method.gradient == deck::GradientForm::mls)) return;
   model.time.step = {};
   model.time.cfl = 0.5;
   Everything observer({0.01, 0.02, 0.03});
@@ -374,6 +374,7 @@ TEST_CASE("a gradient has the same bits whatever memory and disk it is given, wh
                        {all, 0, 0},
                        {all, 0, 2},
                        {all, 0, most / 2}}) {
+    if (transfer != deck::Transfer::apic && !c.lean && c.snapshots != 5) continue;  // it takes a while
     INFO(c.snapshots << " snapshots, " << c.on_disk << " of them on disk, room for the sums of " << c.blocks
                      << " blocks, lean: " << c.lean);
     StepSequence with_room = steps;
