@@ -259,14 +259,13 @@ MemoryPlan plan_gradient(const Model& model, const StepSequence& steps, const Ro
   const std::size_t wanted = std::max<std::size_t>(plan.steps, 1);
   const std::size_t left = room.memory - std::min(fixed, room.memory), lean = lean_states(*solver, steps);
   const std::size_t all = lean * solver->lean_bytes() + (plan.steps - lean) * plan.snapshot_bytes;
+  const Split split = split_snapshots(*solver, wanted, {left, room.disk});
   if (lean > 0 && all <= left) {
     plan.lean = lean, plan.snapshots = plan.steps;
-    const Split whole = split_snapshots(*solver, plan.steps, {left, room.disk});
-    plan.whole_snapshots = whole.all(), plan.whole_on_disk = whole.on_disk;
+    plan.whole_snapshots = split.all(), plan.whole_on_disk = split.on_disk;
     plan.snapshot_bytes = all / plan.steps, plan.peak_bytes = fixed + all;
     return plan;
   }
-  const Split split = split_snapshots(*solver, wanted, {left, room.disk});
   constexpr double mib = 1 << 20;
   if (split.all() < least && plan.steps > 1)
     throw Error(ExitCode::deck,
@@ -287,16 +286,13 @@ ModelGradient differentiate_run(const Model& model, const StepSequence& steps, O
     const std::unique_ptr<ReversibleSolver> solver = make_reversible_solver(model, stack.memory().backend());
     return Reversal(*solver, steps, observer, as_planned, stack, stop).run(cost);
   };
-  const auto run_whole = [&] {
-    MemoryPlan other = plan;
-    other.lean = 0, other.snapshots = plan.whole_snapshots, other.on_disk = plan.whole_on_disk;
-    return run(other);
-  };
   ModelGradient gradient;
   try {
     gradient = run(plan);
   } catch (const TooManyWhole&) {
-    gradient = run_whole();
+    MemoryPlan whole = plan;
+    whole.lean = 0, whole.snapshots = plan.whole_snapshots, whole.on_disk = plan.whole_on_disk;
+    gradient = run(whole);
   }
   cost.measured_peak_bytes = stack.memory().most_used();
   cost.written_bytes = stack.file().written_bytes(), cost.read_bytes = stack.file().read_bytes();
