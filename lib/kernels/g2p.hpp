@@ -71,7 +71,8 @@ JAXMPM_INLINE void gather(const StencilRows<Sch, false>& rows, const Stencil& t,
   });
 }
 
-/// Gathers for `count` particles (those of the stencils t), in the order of GatheredGroups; lanes behind them repeat the last. `rows` holds the stencil of base node `loaded` from particle to particle, and from batch to batch.
+/// Gathers for `count` particles (those of the stencils t), in the order of GatheredGroups; lanes behind them repeat the last. `rows` holds the
+/// stencil of base node `loaded` from particle to particle, and from batch to batch.
 template <class Sch, class Stencil>
 JAXMPM_INLINE void gather_batch(const Stencil& t, int count, const typename Sch::T* arena, StencilRows<Sch, false>* rows, int& loaded,
                                 ParticleRows<typename Sch::T, Sch::V * GatheredGroups<Sch>::padded>& gathered) {
@@ -79,10 +80,7 @@ JAXMPM_INLINE void gather_batch(const Stencil& t, int count, const typename Sch:
   using G = GatheredGroups<Sch>;
   using R = typename StencilRows<Sch, false>::R;
   for (int l = 0; l < count; ++l) {
-    if (t.base[l] != loaded) {
-      loaded = t.base[l];
-      for (int plane = 0; plane < Sch::planes; ++plane) rows[plane].load(arena + plane * Sch::arena_plane + loaded * 4);
-    }
+    load_rows(rows, arena, t.base[l], loaded);
     R sums[G::padded];
     for (int i = G::count; i < G::padded; ++i) sums[i] = R(T(0));
     gather<Sch, Sch::g2p_moments, Sch::g2p_slopes>(rows[0], t, l, sums);

@@ -56,6 +56,14 @@ struct StencilRows {
   }
 };
 
+/// Loads the rows of all planes at a base node from an arena, unless `loaded` says that they are those.
+template <class Sch, bool Masses>
+JAXMPM_INLINE void load_rows(StencilRows<Sch, Masses>* rows, const typename Sch::T* arena, int base, int& loaded) {
+  if (base == loaded) return;
+  loaded = base;
+  for (int plane = 0; plane < Sch::planes; ++plane) rows[plane].load(arena + plane * Sch::arena_plane + base * 4);
+}
+
 /// Which groups of V values (quads where V = 4) of a particle's row of coefficients a plane takes: `rest` goes with w alone, moments + k with
 /// d on axis k, slopes + k with g on axis k; −1: not at all.
 struct PlaneQuads {

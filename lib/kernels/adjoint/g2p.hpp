@@ -132,7 +132,7 @@ class G2pAdjoint {
         for (auto& r : by_rows_) r.clear();
         current_ = t.base[l];
       }
-      load(t.base[l]);
+      load_rows(rows_, velocities_, t.base[l], loaded_);
       typename Rows::R place[PlaceSums<Sch>::padded];
       for (auto& x : place) x = typename Rows::R(T(0));
       scatter<Sch, G::value, moments, slopes>(by_rows_[0], t, l, batch.rows.row(l));
@@ -153,12 +153,6 @@ class G2pAdjoint {
   }
 
  private:
-  JAXMPM_INLINE void load(int base) {
-    if (base == loaded_) return;
-    loaded_ = base;
-    for (int plane = 0; plane < Sch::planes; ++plane) rows_[plane].load(velocities_ + plane * Sch::arena_plane + loaded_ * 4);
-  }
-
   const MaterialAdjoint<T, Dim>& material_;
   const StepConstants<T>& step_;
   const Index<Dim>& origin_;

@@ -126,10 +126,7 @@ class P2gAdjoint {
     ParticleRows<T, G::V * G::padded> gathered;
     PlaceSums<Sch> by_place;
     for (int l = 0; l < count; ++l) {
-      if (t.base[l] != loaded_) {
-        loaded_ = t.base[l];
-        for (int plane = 0; plane < Sch::planes; ++plane) rows_[plane].load(arena_ + plane * Sch::arena_plane + loaded_ * 4);
-      }
+      load_rows(rows_, arena_, t.base[l], loaded_);
       R sums[G::padded], place[PlaceSums<Sch>::padded];
       for (int i = G::count; i < G::padded; ++i) sums[i] = R(T(0));
       for (R& x : place) x = R(T(0));
