@@ -118,11 +118,17 @@ JAXMPM_INLINE void update_node(typename Sch::T* v, typename Sch::T* change, cons
   }
 }
 
-/// The same for the nodes of a block.
+/// The same for the nodes of a block, from `sums` to `own`, which may be the same.
 template <class Sch>
-void update_nodes(typename Sch::T* own, const GridConstants<typename Sch::T, Sch::Dim>& grid) {
-  for (int node = 0; node < Sch::Shape::cells; ++node)
+void update_nodes(const typename Sch::T* sums, typename Sch::T* own, const GridConstants<typename Sch::T, Sch::Dim>& grid) {
+  using Quad = Pack<typename Sch::T, 4>;
+  for (int node = 0; node < Sch::Shape::cells; ++node) {
+    for (int plane = 0; plane < Sch::planes; ++plane) {
+      const int at = plane * Sch::own_plane + 4 * node;
+      Quad::load(sums + at).store(own + at);
+    }
     update_node<Sch>(own + 4 * node, own + (Sch::planes - 1) * Sch::own_plane + 4 * node, grid);
+  }
 }
 
 }  // namespace jaxmpm

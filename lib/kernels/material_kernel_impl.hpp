@@ -1,7 +1,7 @@
 #pragma once
 // A law (lib/materials) on batches of particles.
+#include "kernels/batch.hpp"
 #include "kernels/material_kernel.hpp"
-#include "kernels/stencil.hpp"
 #include "materials/registry.hpp"
 
 namespace jaxmpm {

@@ -34,15 +34,23 @@ struct Scheme {
   /// the first quad in 2D and the first place of the second in 3D.
   static constexpr int planes = flip || (dilation && Dim == 3) ? 2 : 1;
   static constexpr int dilation_plane = Dim == 2 ? 0 : 1, dilation_lane = Dim == 2 ? 3 : 0;
-  /// Values of a node in the loops over rows: the whole quad, or in 2D momenta (velocities) alone, with masses apart, where that takes fewer
-  /// packs. `vector_at`: where the momentum begins among them.
-  static constexpr bool row_in_one_pack = native_lanes<T> >= 4 * S;
-  static constexpr int V = Dim == 2 && !dilation && !row_in_one_pack ? 2 : 4, vector_at = V == 2 ? 0 : 1;
+  /// Values that go together in what a particle gives to or takes from a node: in 3D the whole quad, in 2D the momentum (velocity) alone.
+  /// `vector_at`: where that begins among them.
+  static constexpr int V = Dim == 2 ? 2 : 4, vector_at = Dim == 2 ? 0 : 1;
   using Shape = BlockShape<Dim, S>;
   static constexpr int arena_plane = (Shape::arena_nodes + 4) * 4;  // rows are read a full vector at a time: room behind the last
   static constexpr int arena_size = arena_plane * planes;
   static constexpr int own_plane = Shape::cells * 4;
   static constexpr int own_size = own_plane * planes;
+};
+
+/// Which groups of V values of a particle a plane of nodes takes or gives: `rest` goes with w alone, moments + k with d on axis k,
+/// slopes + k with g on axis k; −1: not at all.
+///
+/// A class of terms has in_plane(plane); `size`, the number of values; and in 2D the places of single values that go with w: `mass` with the
+/// first of a quad, `theta` with the last, −1 where there is none.
+struct PlaneTerms {
+  int rest, moments, slopes;
 };
 
 }  // namespace jaxmpm

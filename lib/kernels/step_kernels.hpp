@@ -22,7 +22,7 @@ struct StepKernels {
   void (*p2g)(const Particles<T, Dim>&, std::size_t begin, std::size_t end, const MaterialKernel<T, Dim>&, const StepConstants<T>&,
               const Index<Dim>& origin, T* arena) = nullptr;
   void (*sum)(const Blocks<Dim>&, std::size_t block, const T* arenas, T* own) = nullptr;
-  void (*update_nodes)(T* own, const GridConstants<T, Dim>&) = nullptr;
+  void (*update_nodes)(const T* sums, T* own, const GridConstants<T, Dim>&) = nullptr;
   TileReport (*g2p)(Particles<T, Dim>&, const Tile&, const Blocks<Dim>&, const T* grid, const MaterialKernel<T, Dim>&,
                     const StepConstants<T>&, bool account, const Index<Dim>& origin, const DomainBounds<Dim>&) = nullptr;
 };

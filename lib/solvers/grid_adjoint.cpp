@@ -197,6 +197,20 @@ auto GridAdjoint<T, Dim>::take_out(const T* sums, T cut_off, int own, T* bars, V
   return direct;
 }
 
+/// Calls f(own) for the own nodes of a block that the halo of neighbour m covers, ascending.
+template <class T, int Dim>
+template <class F>
+void GridAdjoint<T, Dim>::for_each_own_node_in_reach(int m, F f) {
+  std::array<int, 3> from{0, 0, 0}, to{1, 1, 1};
+  for (std::size_t d = Dim, rest = std::size_t(m); d-- > 0; rest /= 3) {
+    const int step = int(rest % 3) - 1;
+    from[d] = step > 0 ? B - reach : 0, to[d] = step < 0 ? reach : B;
+  }
+  for (int i = from[0]; i < to[0]; ++i)
+    for (int j = from[1]; j < to[1]; ++j)
+      for (int k = from[2]; k < to[2]; ++k) f(BlockShape<Dim, 2>::own_node(i, j, k));
+}
+
 /// Adds the halos that reach a wall block, in the order of neighbours: P = (p + impulse + m Δt (g + b))/(1 + ζΔt).
 template <class T, int Dim>
 void GridAdjoint<T, Dim>::collect_wall_block(const Blocks<Dim>& blocks, std::size_t b, const GridConstants<T, Dim>& constants,
@@ -212,14 +226,11 @@ void GridAdjoint<T, Dim>::collect_wall_block(const Blocks<Dim>& blocks, std::siz
     Node other_first = first;  // as seen from here, also across periodic faces
     for (std::size_t d = Dim, rest = std::size_t(m); d-- > 0; rest /= 3) other_first[d] += B * (int(rest % 3) - 1);
     const Sum* halo = halo_.data() + std::size_t(slot) * halo_nodes;
-    for (int own = 0; own < cells; ++own) {
-      if (!(sums[4 * own] > 0)) continue;
+    for_each_own_node_in_reach(m, [&](int own) {
+      if (!(sums[4 * own] > 0)) return;
       const Node node = node_of<Dim>(first, own);
-      bool covered = true;
-      for (std::size_t d = 0; d < Dim; ++d) covered = covered && node[d] >= other_first[d] - reach && node[d] < other_first[d] + B + reach;
-      if (!covered) continue;
       const Sum& by = halo[halo_node(node, other_first)];
-      if (by.nothing()) continue;
+      if (by.nothing()) return;
       const V pull = forward_.pull(constants, b, own);
       T* by_sums = bars + 4 * own;
       by_sums[0] += by.mass;
@@ -233,7 +244,7 @@ void GridAdjoint<T, Dim>::collect_wall_block(const Blocks<Dim>& blocks, std::siz
         const T momentum = sums[4 * own + 1 + c] + (kernels_.planes == 2 ? sums[cells * 4 + 4 * own + 1 + c] : T(0));
         block_[b].damping -= double(by.momentum[c] * (momentum + sums[4 * own] * pull[c]));
       }
-    }
+    });
   }
   add_by_pull(blocks, b, by_pull, time);
 }

@@ -64,6 +64,8 @@ class GridAdjoint {
   Sum take_out(const T* sums, T cut_off, int own, T* bars, V& bar) const;
   void wall_block_adjoint(const Blocks<Dim>& blocks, std::size_t b, const GridConstants<T, Dim>& constants);
   void collect_wall_block(const Blocks<Dim>& blocks, std::size_t b, const GridConstants<T, Dim>& constants, double time);
+  template <class F>
+  static void for_each_own_node_in_reach(int m, F f);
   void obstacle_chain(std::size_t block, int own, const V& start, V& bar, GridBars& bars) const;
   static int halo_node(const Node& node, const Node& first);
 

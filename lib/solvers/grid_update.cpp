@@ -74,20 +74,36 @@ WallSums<T, Dim> GridUpdate<T, Dim>::wall_sums(const Blocks<Dim>& blocks, std::s
           force()};
 }
 
+/// Where the sums of a block are put: those of wall blocks, which neighbours ask for, and those to be kept beside the velocities.
+template <class T, int Dim>
+T* GridUpdate<T, Dim>::place_of_sums(std::size_t b) {
+  const std::size_t size = kernels_.own_size;
+  const int wall_slot = contact_blocks_.wall_slot()[b];
+  if (wall_slot >= 0) return raw_.data() + std::size_t(wall_slot) * size;
+  return (keep_sums_ ? sums_ : grid_).data() + b * size;
+}
+
 template <class T, int Dim>
 void GridUpdate<T, Dim>::update(const Blocks<Dim>& blocks, const T* arenas, double dt, double time) {
   if (keep_sums_) sums_.resize(blocks.count() * kernels_.own_size);
   found_ = sums_.data();
-  update_from(
-      blocks, [&](std::size_t b, T* own) { kernels_.sum(blocks, b, arenas, own); }, dt, time);
+  const auto sums_of = [&](std::size_t b) {
+    T* to = place_of_sums(b);
+    kernels_.sum(blocks, b, arenas, to);
+    return to;
+  };
+  update_from(blocks, sums_of, dt, time);
 }
 
 template <class T, int Dim>
 void GridUpdate<T, Dim>::update_again(const Blocks<Dim>& blocks, const T* sums, double dt, double time) {
   const std::size_t size = kernels_.own_size;
   found_ = sums;
-  update_from(
-      blocks, [&](std::size_t b, T* own) { std::memcpy(own, sums + b * size, sizeof(T) * size); }, dt, time);
+  const auto sums_of = [&](std::size_t b) {
+    if (contact_blocks_.wall_slot()[b] >= 0) std::memcpy(place_of_sums(b), sums + b * size, sizeof(T) * size);
+    return sums + b * size;
+  };
+  update_from(blocks, sums_of, dt, time);
 }
 
 template <class T, int Dim>
@@ -97,30 +113,20 @@ void GridUpdate<T, Dim>::copy_sums(T* to) const {
                            [&](std::size_t b) { std::memcpy(to + b * size, sums(b), sizeof(T) * size); });
 }
 
-/// `sum(b, own)` gives the sums of a block's own nodes.
+/// `sums_of(b)` gives the sums of a block's own nodes, and sees to it that those of wall blocks are where neighbours look for them.
 template <class T, int Dim>
-template <class Sum>
-void GridUpdate<T, Dim>::update_from(const Blocks<Dim>& blocks, const Sum& sum, double dt, double time) {
+template <class Sums>
+void GridUpdate<T, Dim>::update_from(const Blocks<Dim>& blocks, const Sums& sums_of, double dt, double time) {
   const GridConstants<T, Dim> constants = this->constants(dt);
   parallel_for_host("jaxmpm::grid", summed_.size(), [&](std::size_t k) {
-    sum(summed_[k], grid_.data() + summed_[k] * kernels_.own_size);
-    update_block(summed_[k], constants);
-    if (model_.body_force) apply_body_force(blocks, summed_[k], constants, dt, time);
-    if (contact_blocks_.obstacles(summed_[k])) apply_obstacles(blocks, summed_[k]);
+    const std::size_t b = summed_[k];
+    if (recording_) contact_[b] = {}, contact_[b].obstacle.resize(model_.obstacles.size());
+    kernels_.update_nodes(sums_of(b), grid_.data() + b * kernels_.own_size, constants);
+    if (model_.body_force) apply_body_force(blocks, b, constants, dt, time);
+    if (contact_blocks_.obstacles(b)) apply_obstacles(blocks, b);
   });
   if (model_.body_force) refuse_bad_force(blocks, time);
   parallel_for_host("jaxmpm::walls", at_walls_.size(), [&](std::size_t w) { update_wall_block(blocks, at_walls_[w], constants); });
-}
-
-template <class T, int Dim>
-void GridUpdate<T, Dim>::update_block(std::size_t b, const GridConstants<T, Dim>& constants) {
-  if (recording_) contact_[b] = {}, contact_[b].obstacle.resize(model_.obstacles.size());
-  T* own = grid_.data() + b * kernels_.own_size;
-  const int wall_slot = contact_blocks_.wall_slot()[b];
-  if (T* kept = wall_slot >= 0 ? raw_.data() + std::size_t(wall_slot) * kernels_.own_size
-                               : (keep_sums_ && found_ == sums_.data() ? sums_.data() + b * kernels_.own_size : nullptr))
-    std::memcpy(kept, own, sizeof(T) * kernels_.own_size);
-  kernels_.update_nodes(own, constants);
 }
 
 /// Adds Δt b of a block's nodes to their velocities, and keeps it for those near walls.

@@ -70,9 +70,9 @@ class GridUpdate {
   static constexpr int cells = BlockShape<Dim, 2>::cells, around = BlockShape<Dim, 2>::neighbours;
 
   const T* force() const { return model_.body_force ? force_.data() : nullptr; }
-  template <class Sum>
-  void update_from(const Blocks<Dim>& blocks, const Sum& sum, double dt, double time);
-  void update_block(std::size_t b, const GridConstants<T, Dim>& constants);
+  template <class Sums>
+  void update_from(const Blocks<Dim>& blocks, const Sums& sums_of, double dt, double time);
+  T* place_of_sums(std::size_t b);
   void note_bad_force(std::size_t node);
   /// Throws NumericsError where a node was noted.
   void refuse_bad_force(const Blocks<Dim>& blocks, double time);

@@ -64,7 +64,7 @@ JAXMPM_INLINE void update_particles_adjoint(const Particles<typename Sch::T, Sch
   if constexpr (Sch::dilation)
     if (!p.dilation.empty()) {
       by_next = load(bar.dilation[0].data() + s, count);
-      average_volume(p, s, count, gathered[G::dilation], step.volume_averaging, H);
+      average_volume(p, s, count, gathered[G::theta], step.volume_averaging, H);
     }
   material.update(p, s, count, H, step.dt, bar, by_H, report.material);
   if constexpr (Sch::dilation)
@@ -72,7 +72,7 @@ JAXMPM_INLINE void update_particles_adjoint(const Particles<typename Sch::T, Sch
       P by_trace(T(0));
       for (int c = 0; c < Dim; ++c) by_trace += P::load(by_H[c * (Dim + 1)]);
       const P by_mean = P(step.volume_averaging / T(Dim)) * by_trace;
-      bars[G::dilation] = by_mean;
+      bars[G::theta] = by_mean;
       store(bar.dilation[0].data() + s, -by_mean, count);
     }
   for (int c = 0; c < Dim; ++c)
@@ -84,83 +84,53 @@ template <class Sch>
 class G2pAdjoint {
   using T = typename Sch::T;
   using G = GatheredGroups<Sch>;
-  using Rows = StencilRows<Sch, false>;
   using Stencil = Stencils<Sch, Sch::g2p_moments, Sch::g2p_slopes, true>;
+  using Nodes = NodeContraction<Sch, false>;
   static constexpr int Dim = Sch::Dim, W = batch<T>;
 
  public:
   /// What a batch gathered in the step.
   struct Batch {
     Stencil t;
-    ParticleRows<T, G::V * G::padded> rows;
-    Pack<T, W> gathered[decltype(rows)::stride];
+    Pack<T, W> gathered[G::padded];
+    typename Nodes::template Sums<Stencil, G> sums;
     Batch(const Particles<T, Dim>& p, std::size_t s, int count, const Index<Dim>& origin) : t(p, s, count, origin) {}
   };
 
   /// `velocities`: the arena that the tile gathered from.
   G2pAdjoint(const MaterialAdjoint<T, Dim>& material, const StepConstants<T>& step, const Index<Dim>& origin,
              const DomainBounds<Dim>& domain, const T* velocities, T* arena)
-      : material_(material), step_(step), origin_(origin), domain_(domain), velocities_(velocities), arena_(arena) {
-    std::memset(arena, 0, sizeof(T) * Sch::arena_size);
-    for (auto& r : rows_) r.clear();
-    for (auto& r : by_rows_) r.clear();
-  }
+      : material_(material), step_(step), origin_(origin), domain_(domain), velocities_(velocities), bars_(arena) {}
 
   /// Gathers again for `count` particles from s, whose state at the start of the step is p.
   template <class Count>
   JAXMPM_ONCE Batch gather(const Particles<T, Dim>& p, std::size_t s, Count count) {
     Batch batch(p, s, count, origin_);
-    gather_batch<Sch>(batch.t, count, velocities_, rows_, loaded_, batch.rows);
-    batch.rows.read(batch.gathered);
+    velocities_.template gather<G>(batch.t, count, batch.gathered, batch.sums);
     return batch;
   }
 
   template <class Count>
   JAXMPM_ONCE void reverse(Batch& batch, const Particles<T, Dim>& p, std::size_t s, Count count, Particles<T, Dim>& bar,
                            AdjointReport& report) {
-    constexpr int moments = Sch::g2p_moments ? G::moments : -1, slopes = Sch::g2p_slopes ? G::slopes : -1;
-    const Stencil& t = batch.t;
-    Pack<T, W> bars[decltype(batch.rows)::stride];
+    Pack<T, W> bars[G::padded];
     for (auto& b : bars) b = Pack<T, W>(T(0));
     update_particles_adjoint<Sch>(p, s, count, batch.gathered, material_, step_, domain_, bar, bars, report);
-    batch.rows.fill(bars);
-
-    PlaceSums<Sch> by_place;
-    for (int l = 0; l < count; ++l) {
-      if (t.base[l] != current_) {
-        flush();
-        for (auto& r : by_rows_) r.clear();
-        current_ = t.base[l];
-      }
-      load_rows(rows_, velocities_, t.base[l], loaded_);
-      typename Rows::R place[PlaceSums<Sch>::padded];
-      for (auto& x : place) x = typename Rows::R(T(0));
-      scatter<Sch, G::value, moments, slopes>(by_rows_[0], t, l, batch.rows.row(l));
-      contract<Sch, G::value, moments, slopes>(rows_[0], t, l, batch.rows.row(l), place, nullptr);
-      if constexpr (Sch::planes == 2) {
-        scatter<Sch, G::change, -1, -1>(by_rows_[1], t, l, batch.rows.row(l));
-        contract<Sch, G::change, -1, -1>(rows_[1], t, l, batch.rows.row(l), place, nullptr);
-      }
-      by_place.put(l, place);
-    }
-    by_place.add_to(bar, s, count);
+    const ParticleValues<Sch, G> values(bars);
+    bars_.add(batch.t, count, values);
+    velocities_.add_by_place(batch.t, s, count, values, batch.sums, bar);
   }
 
   /// Once all batches are done.
-  void flush() {
-    for (int plane = 0; current_ >= 0 && plane < Sch::planes; ++plane)
-      by_rows_[plane].add_to(arena_ + plane * Sch::arena_plane + current_ * 4);
-  }
+  void flush() { bars_.flush(); }
 
  private:
   const MaterialAdjoint<T, Dim>& material_;
   const StepConstants<T>& step_;
   const Index<Dim>& origin_;
   const DomainBounds<Dim>& domain_;
-  const T* velocities_;
-  T* arena_;
-  Rows rows_[Sch::planes], by_rows_[Sch::planes];
-  int current_ = -1, loaded_ = -1;  // base nodes of by_rows_ and of rows_
+  Nodes velocities_;
+  Scatter<Sch, false> bars_;
 };
 
 /// Adjoint of grid to particles for particles [begin, end).

@@ -2,7 +2,7 @@
 // The adjoint of any law (lib/materials): by hand where it has one, else by a tape of its own update (core/tape.hpp).
 #include "core/tape.hpp"
 #include "kernels/adjoint/material_adjoint.hpp"
-#include "kernels/stencil.hpp"
+#include "kernels/batch.hpp"
 #include "materials/registry.hpp"
 
 namespace jaxmpm {
