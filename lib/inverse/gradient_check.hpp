@@ -17,13 +17,15 @@ struct DirectionCheck {
   double size = 0;                // of g·d if its parts were independent: what an error of it is relative to, at least
   double scatter = 0;             // of the differences over the finest steps
   bool smooth = false;            // slope 2 ± 0.1, or remainders of rounding alone
+  bool fine = false;              // only the difference over a finer step than the first agrees, or comes nearest
 };
 
 struct VariableCheck {
   std::string label;
-  double derivative = 0, difference = 0;  // by the variable; the difference nearest over three spacings
+  double derivative = 0, difference = 0;  // by the variable; the difference nearest over three spacings or more
   double error = 0;                       // relative, to a thousandth of what the most important variable does at least
   double scatter = 0;                     // of the differences over the finest spacings, relative like the error
+  bool fine = false;                      // only the difference over a finer spacing than these agrees, or comes nearest
 };
 
 struct GradientCheck {
@@ -36,7 +38,8 @@ struct GradientCheck {
   std::string verdict;
 };
 
-/// At the start of the unknowns, priors included; takes some sixteen forward runs for each direction and up to six for each variable.
+/// At the start of the unknowns, priors included; takes some sixteen forward runs for each direction and up to six for each variable,
+/// twice as many where none of the differences agree.
 GradientCheck check_gradient(const Unknowns& unknowns, Objective& objective, std::size_t directions, std::uint64_t seed);
 
 }  // namespace jaxmpm

@@ -75,6 +75,26 @@ class JumpyObjective : public GravityObjective {
   std::vector<double> residuals_;
 };
 
+/// The gradient is right, but the loss jumps close by, as where a particle is about to touch a wall.
+class JumpObjective : public JumpyObjective {
+ public:
+  Evaluation loss(const Values& values) override {
+    Evaluation found = JumpyObjective::loss(values);
+    jumped_ = JumpyObjective::residuals();
+    jumped_.back() = values.at("/gravity/0")[0] > 0.5 + 2e-7 ? 1.001 : 1;
+    return found;
+  }
+  Evaluation gradient(const Values& values) override {
+    Evaluation found = JumpyObjective::gradient(values);
+    jumped_ = JumpyObjective::residuals();
+    return found;
+  }
+  const std::vector<double>& residuals() const override { return jumped_; }
+
+ private:
+  std::vector<double> jumped_;
+};
+
 }  // namespace
 
 TEST_CASE("A right gradient has remainders of second order, and agrees with differences and dot products") {
@@ -121,6 +141,18 @@ TEST_CASE("Differences that scatter do not make a right gradient wrong") {
   INFO(check.verdict);
   CHECK(check.good);
   CHECK(check.directions[0].scatter / check.directions[0].size > 1e-5);
+}
+
+TEST_CASE("A jump of the loss within the differences does not make a right gradient wrong") {
+  const InverseDeck own(two);
+  const Unknowns unknowns(own.deck);
+  JumpObjective objective;
+  const GradientCheck check = check_gradient(unknowns, objective, 3, 1);
+  INFO(check.verdict);
+  CHECK(check.good);
+  CHECK(check.variables[0].fine);
+  CHECK_FALSE(check.variables[1].fine);
+  CHECK(check.verdict.find("agree with differences over the finest steps only") != std::string::npos);
 }
 
 TEST_CASE("At a bound the check looks inwards") {
