@@ -1,6 +1,6 @@
 #pragma once
 // Portable SIMD: a pack of N lanes on the compiler's own vector type, so that g++ and nvcc (host side) both take it. Widths 2 to 16.
-// Packs behave as scalars (see tensor.hpp); comparisons give a Mask for select(). Rows and transposes serve the transfer kernels.
+// Packs behave as scalars (see tensor.hpp); comparisons give a Mask for select(). Rows of values and quads in memory: pack_rows.hpp.
 #include <cmath>
 #include <type_traits>
 #include <utility>
@@ -144,8 +144,6 @@ namespace pack_detail {
 #define JAXMPM_SPREAD(i) (Offset + (i) / 4)
 #define JAXMPM_FOLLOWING(i) (Offset + (i))
 #define JAXMPM_EVERY_OTHER(i) (Offset + (i) / G * (2 * G) + (i) % G)
-#define JAXMPM_EVERY_QUAD(i) (Offset + (i)*4)
-#define JAXMPM_MIDDLES(i) ((i) / 2 * 4 + (i) % 2 + 1)
 #define JAXMPM_QUADS(i) \
   ((i) % 4 == 0 ? N + (Offset + (i)) / 4 : (i) % 4 == 3 ? N + N / 2 + (Offset + (i)) / 4 : (Offset + (i)) / 4 * 2 + (i) % 4 - 1)
 /// {a[h], b[h], a[h+1], b[h+1], …} with h = 0 (Half 0) or N/2 (Half 1).
@@ -177,16 +175,7 @@ template <int G, int Offset, class T, int N>
 JAXMPM_INLINE Pack<T, N> every_other(Pack<T, N> a, Pack<T, N> b) {
   JAXMPM_SHUFFLE(a, b, JAXMPM_EVERY_OTHER)
 }
-/// Of each quad of two packs the value at Offset, or the two in the middle.
-template <int Offset, int N, class T, int M>
-JAXMPM_INLINE Pack<T, N> every_quad(Pack<T, M> a, Pack<T, M> b) {
-  JAXMPM_SHUFFLE(a, b, JAXMPM_EVERY_QUAD)
-}
-template <class T, int N>
-JAXMPM_INLINE Pack<T, N> middles(Pack<T, N> a, Pack<T, N> b) {
-  JAXMPM_SHUFFLE(a, b, JAXMPM_MIDDLES)
-}
-/// Lanes from Offset on of quads with those middles; `ends`: their firsts, then their lasts.
+/// Lanes from Offset on of quads with those two values in the middle; `ends`: their firsts, then their lasts.
 template <int Offset, class T, int N>
 JAXMPM_INLINE Pack<T, N> quads(Pack<T, N> middles, Pack<T, N> ends) {
   JAXMPM_SHUFFLE(middles, ends, JAXMPM_QUADS)
@@ -197,8 +186,6 @@ JAXMPM_INLINE Pack<T, N> part(Pack<T, M> a, Pack<T, M> b) {
   JAXMPM_SHUFFLE(a, b, JAXMPM_FOLLOWING)
 }
 #undef JAXMPM_QUADS
-#undef JAXMPM_MIDDLES
-#undef JAXMPM_EVERY_QUAD
 #undef JAXMPM_EVERY_OTHER
 #undef JAXMPM_FOLLOWING
 #undef JAXMPM_SPREAD
@@ -265,123 +252,6 @@ JAXMPM_INLINE bool any(Mask<T, N> a) {
     const Pack<typename Mask<T, N>::Lane, N> lanes(a.m);
     return any(Mask<T, N / 2>{lower_half(lanes).v | upper_half(lanes).v});
   }
-}
-
-/// `rounds` perfect shuffles of the lanes of C packs, seen as one deck of cards. With C = 2^rounds packs r[c] = {value c of each of N
-/// particles} become the particles' values one after the other; with 2^rounds = N it is the other way round, whatever C (even) is.
-template <int rounds, int C, class T, int N>
-JAXMPM_INLINE void perfect_shuffles(Pack<T, N>* r) {
-  static_assert(C % 2 == 0);
-  for (int round = 0; round < rounds; ++round) {
-    Pack<T, N> t[C];
-    for (int i = 0; i < C / 2; ++i) {
-      t[2 * i] = pack_detail::interleave<0>(r[i], r[i + C / 2]);
-      t[2 * i + 1] = pack_detail::interleave<1>(r[i], r[i + C / 2]);
-    }
-    for (int i = 0; i < C; ++i) r[i] = t[i];
-  }
-}
-/// Logarithm to base 2 of a power of two.
-constexpr int log2_of(int n) { return n <= 1 ? 0 : 1 + log2_of(n / 2); }
-
-namespace pack_detail {
-/// Replaces each two of N packs whose numbers differ by `apart` alone, a and b, by first(a, b) and second(a, b).
-template <int apart, class T, int N, class First, class Second>
-JAXMPM_INLINE void join_pairs(Pack<T, N>* r, First first, Second second) {
-  static_for<N / 2>([&](auto k) JAXMPM_INLINE_LAMBDA {
-    constexpr int i = k / apart * 2 * apart + k % apart;
-    const Pack<T, N> a = r[i], b = r[i + apart];
-    r[i] = first(a, b), r[i + apart] = second(a, b);
-  });
-}
-template <int U, int apart, class T, int N>
-JAXMPM_INLINE void zip_pairs(Pack<T, N>* r) {
-  using P = Pack<T, N>;
-  join_pairs<apart>(
-      r, [](P a, P b) { return zip<0, U>(a, b); }, [](P a, P b) { return zip<1, U>(a, b); });
-  if constexpr (apart > 1) zip_pairs<U, apart / 2>(r);
-}
-template <int U, int apart, class T, int N>
-JAXMPM_INLINE void unzip_pairs(Pack<T, N>* r) {
-  using P = Pack<T, N>;
-  join_pairs<apart>(
-      r, [](P a, P b) { return unzip<0, U>(a, b); }, [](P a, P b) { return unzip<1, U>(a, b); });
-  if constexpr (2 * apart < N) unzip_pairs<U, 2 * apart>(r);
-}
-}  // namespace pack_detail
-
-/// Transposes N packs of N lanes in place: as perfect shuffles do, but in steps that processors have as instructions of their own. First the
-/// lanes of units of 16 bytes change places with as many bits of the pack's number, then the units with the others.
-template <class T, int N>
-JAXMPM_INLINE void transpose(Pack<T, N>* r) {
-  constexpr int unit = 16 / int(sizeof(T)), U = unit < N ? unit : N;
-  if constexpr (U > 1) pack_detail::zip_pairs<U, U / 2>(r);
-  if constexpr (U < N) pack_detail::unzip_pairs<U, U>(r);
-}
-
-/// N values from memory, where they were stored in pieces of `piece` lanes or more: a load never takes from two of them.
-template <class T, int N, int piece>
-JAXMPM_INLINE Pack<T, N> load_pieces(const T* p) {
-  if constexpr (piece >= N) return Pack<T, N>::load(p);
-  else return join(load_pieces<T, N / 2, piece>(p), load_pieces<T, N / 2, piece>(p + N / 2));
-}
-
-/// Quad K of a row in memory ({r[4K] … r[4K+3]}), repeated over all lanes.
-template <int K, int N, class T>
-JAXMPM_INLINE Pack<T, N> repeat_quad(const T* row) {
-  const auto whole = Pack<T, N>::load(row + 4 * K / N * N);
-  if constexpr (N == 4) return whole;
-  else return pack_detail::repeat<4 * K % N>(whole);
-}
-
-/// Part C of quad K of a row with every value four times: {r[4K+C·N/4] ×4, r[4K+C·N/4+1] ×4, …}.
-template <int K, int C, int N, class T>
-JAXMPM_INLINE Pack<T, N> spread_quad(const T* row) {
-  constexpr int first = 4 * K + C * (N / 4);
-  if constexpr (N == 4) return Pack<T, N>(row[first]);
-  else return pack_detail::spread<first % N>(Pack<T, N>::load(row + first / N * N));
-}
-
-/// Adds groups of G lanes to the groups beside them, and puts what they give in `a` before what they give in `b`.
-template <int G, class T, int N>
-JAXMPM_INLINE Pack<T, N> fold(Pack<T, N> a, Pack<T, N> b) {
-  return pack_detail::every_other<G, 0>(a, b) + pack_detail::every_other<G, G>(a, b);
-}
-
-/// Adds up the quads in each of N/4 packs and returns the sums side by side.
-template <class T, int N>
-JAXMPM_INLINE Pack<T, N> sum_quads(const Pack<T, N>* x) {
-  if constexpr (N == 4) return x[0];
-  else if constexpr (N == 8) return fold<4>(x[0], x[1]);
-  else return fold<4>(fold<8>(x[0], x[1]), fold<8>(x[2], x[3]));
-}
-
-/// Of N/2 quads in memory the two values in the middle, the first, and the last.
-template <int N, class T>
-JAXMPM_INLINE Pack<T, N> load_middles(const T* at) {
-  return pack_detail::middles(Pack<T, N>::load(at), Pack<T, N>::load(at + N));
-}
-template <int N, class T>
-JAXMPM_INLINE Pack<T, N / 2> load_firsts(const T* at) {
-  return pack_detail::every_quad<0, N / 2>(Pack<T, N>::load(at), Pack<T, N>::load(at + N));
-}
-template <int N, class T>
-JAXMPM_INLINE Pack<T, N / 2> load_lasts(const T* at) {
-  return pack_detail::every_quad<3, N / 2>(Pack<T, N>::load(at), Pack<T, N>::load(at + N));
-}
-/// Adds to the first of those quads: the middle from the first two lanes of a pack, the first and the last from the first lane of others.
-template <class T, int N, int Half>
-JAXMPM_INLINE void add_to_first_quad(T* at, Pack<T, N> middles, Pack<T, Half> firsts, Pack<T, Half> lasts) {
-  const auto ends = join(first_lanes<2>(firsts), first_lanes<2>(lasts));
-  (Pack<T, 4>::load(at) + pack_detail::quads<0>(first_lanes<4>(middles), ends)).store(at);
-}
-/// Adds to all of those values.
-template <class T, int N, int Half>
-JAXMPM_INLINE void add_to_quads(T* at, Pack<T, N> middles, Pack<T, Half> firsts, Pack<T, Half> lasts) {
-  static_assert(2 * Half == N);
-  const Pack<T, N> ends = join(firsts, lasts);
-  (Pack<T, N>::load(at) + pack_detail::quads<0>(middles, ends)).store(at);
-  (Pack<T, N>::load(at + N) + pack_detail::quads<N>(middles, ends)).store(at + N);
 }
 
 }  // namespace jaxmpm

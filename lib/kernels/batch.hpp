@@ -5,7 +5,7 @@
 #include <tuple>
 #include <type_traits>
 
-#include "core/pack.hpp"
+#include "core/pack_rows.hpp"
 #include "core/scalar.hpp"
 
 namespace jaxmpm {

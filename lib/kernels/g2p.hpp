@@ -94,14 +94,14 @@ JAXMPM_INLINE void update_particles(Particles<typename Sch::T, Sch::Dim>& p, std
   report.displacement = std::max(report.displacement, double(largest(moved)));
 }
 
-/// Gathers to particles [begin, end) of a body from `arena` and advances their material. `origin`: node 0 of the arena.
+/// Gathers to particles [begin, end) of a body from the nodes around them and advances their material. `origin`: node 0 of the arena.
 template <class Sch>
 TileReport g2p_tile(Particles<typename Sch::T, Sch::Dim>& p, std::size_t begin, std::size_t end,
                     const MaterialKernel<typename Sch::T, Sch::Dim>& material, const StepConstants<typename Sch::T>& step, bool account,
-                    const Index<Sch::Dim>& origin, const DomainBounds<Sch::Dim>& domain, const typename Sch::T* arena) {
+                    const Index<Sch::Dim>& origin, const DomainBounds<Sch::Dim>& domain, const Nodes<Sch, false>& around) {
   using T = typename Sch::T;
   using G = GatheredGroups<Sch>;
-  Gather<Sch> nodes(arena);
+  Gather<Sch> nodes(around);
   TileReport report;
   for_each_batch<T>(begin, end, [&](std::size_t s, int count) JAXMPM_INLINE_LAMBDA {
     const Stencils<Sch, Sch::g2p_moments, Sch::g2p_slopes> t(p, s, count, origin);

@@ -62,21 +62,14 @@ void sum_arenas(const Blocks<Sch::Dim>& blocks, std::size_t b, const typename Sc
   }
 }
 
-/// Copies the grid around a tile's block into its arena.
-template <class Sch>
-void load_arena(const Blocks<Sch::Dim>& blocks, std::size_t block, const typename Sch::T* grid, typename Sch::T* arena) {
-  using T = typename Sch::T;
-  constexpr int filled = 4 * Sch::Shape::arena_nodes;
-  for (int plane = 0; plane < Sch::planes; ++plane)  // rows read on behind the last node, with weight zero: what lies there must be finite
-    std::memset(arena + plane * Sch::arena_plane + filled, 0, sizeof(T) * (Sch::arena_plane - filled));
+/// Rows of the nodes around a tile's block: f(block that owns them, own node, arena node, count).
+template <class Sch, class F>
+JAXMPM_INLINE void for_each_row_around(const Blocks<Sch::Dim>& blocks, std::size_t block, F f) {
   static_for<Sch::Shape::neighbours>([&](auto m) {
-    const T* from = grid + std::size_t(blocks.neighbour[block * Sch::Shape::neighbours + std::size_t(m)]) * Sch::own_size;
+    const auto from = std::size_t(blocks.neighbour[block * Sch::Shape::neighbours + std::size_t(m)]);
     constexpr int mirrored = Sch::Shape::neighbours - 1 - m;  // the neighbour at the opposite distance: what it shares is what we take
-    for (int plane = 0; plane < Sch::planes; ++plane)
-      for_each_shared_row<typename Sch::Shape, Sch::Dim, Sch::S, mirrored>([&](int own_node, int arena_node, auto count) {
-        std::memcpy(arena + plane * Sch::arena_plane + 4 * arena_node, from + plane * Sch::own_plane + 4 * own_node,
-                    sizeof(T) * 4 * std::size_t(count));
-      });
+    for_each_shared_row<typename Sch::Shape, Sch::Dim, Sch::S, mirrored>(
+        [&](int own_node, int arena_node, auto count) { f(from, own_node, arena_node, count); });
   });
 }
 

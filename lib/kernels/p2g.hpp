@@ -74,7 +74,7 @@ void p2g_tile(const Particles<typename Sch::T, Sch::Dim>& p, std::size_t begin, 
     Q q(p, s, count, material, step, sigma);
     nodes.add(t, count, ParticleValues<Sch, Q>(q.value));
   });
-  nodes.flush();
+  nodes.finish();
 }
 
 }  // namespace jaxmpm

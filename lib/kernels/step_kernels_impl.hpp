@@ -9,9 +9,8 @@ TileReport gather_tile(Particles<typename Sch::T, Sch::Dim>& p, const Tile& tile
                        const typename Sch::T* grid, const MaterialKernel<typename Sch::T, Sch::Dim>& material,
                        const StepConstants<typename Sch::T>& step, bool account, const Index<Sch::Dim>& origin,
                        const DomainBounds<Sch::Dim>& domain) {
-  alignas(64) typename Sch::T arena[Sch::arena_size];
-  load_arena<Sch>(blocks, tile.block, grid, arena);
-  return g2p_tile<Sch>(p, tile.begin, tile.end, material, step, account, origin, domain, arena);
+  const Nodes<Sch, false> nodes(blocks, tile.block, grid);
+  return g2p_tile<Sch>(p, tile.begin, tile.end, material, step, account, origin, domain, nodes);
 }
 
 template <class Sch>

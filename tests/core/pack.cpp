@@ -1,5 +1,5 @@
 // Packs turned round: rows of particles to packs of one value, and back.
-#include "core/pack.hpp"
+#include "core/pack_rows.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -26,39 +26,37 @@ void check_transpose() {
     for (int c = 0; c < N; ++c) REQUIRE(packs[c][p] == value<T>(p, c));
 }
 
-template <class T, int W, int C>
-void check_shuffles() {
-  CAPTURE(sizeof(T), W, C);
-  alignas(64) T rows[W * C];
-  for (int p = 0; p < W; ++p)
+template <class T, int N, int C>
+void check_rows() {
+  CAPTURE(sizeof(T), N, C);
+  alignas(64) T rows[N * C];
+  Pack<T, N> packs[C];
+  for (int p = 0; p < N; ++p)
     for (int c = 0; c < C; ++c) rows[p * C + c] = value<T>(p, c);
-  Pack<T, W> packs[C];
-  for (int k = 0; k < C; ++k) packs[k] = load_pieces<T, W, (C < W ? C : W)>(rows + k * W);
-  perfect_shuffles<log2_of(W), C>(packs);
-  for (int p = 0; p < W; ++p)
-    for (int c = 0; c < C; ++c) REQUIRE(packs[c][p] == value<T>(p, c));
-  perfect_shuffles<log2_of(C), C>(packs);
+  load_columns<C>(packs, [&](int p) { return rows + p * C; });
+  for (int c = 0; c < C; ++c)
+    for (int p = 0; p < N; ++p) REQUIRE(packs[c][p] == value<T>(p, c));
+  columns_to_rows<C>(packs);
   for (int k = 0; k < C; ++k)
-    for (int l = 0; l < W; ++l) REQUIRE(packs[k][l] == rows[k * W + l]);
+    for (int l = 0; l < N; ++l) REQUIRE(packs[k][l] == rows[k * N + l]);
 }
 
 template <class T, int N>
 void check_quads() {
   CAPTURE(sizeof(T), N);
-  alignas(64) T quads[2 * N], sum[2 * N];
-  for (int i = 0; i < 2 * N; ++i) quads[i] = T(i + 1), sum[i] = T(10 * i);
-  const auto middles = load_middles<N>(quads);
-  const auto firsts = load_firsts<N>(quads), lasts = load_lasts<N>(quads);
+  alignas(64) T middles[N], firsts[N / 2], lasts[N / 2], quads[2 * N] = {};
   for (int node = 0; node < N / 2; ++node) {
-    REQUIRE(firsts[node] == quads[4 * node]);
-    REQUIRE(middles[2 * node] == quads[4 * node + 1]);
-    REQUIRE(middles[2 * node + 1] == quads[4 * node + 2]);
-    REQUIRE(lasts[node] == quads[4 * node + 3]);
+    firsts[node] = value<T>(node, 0), lasts[node] = value<T>(node, 3);
+    for (int c = 0; c < 2; ++c) middles[2 * node + c] = value<T>(node, 1 + c);
   }
-  add_to_quads(sum, middles, firsts, lasts);
-  for (int i = 0; i < 2 * N; ++i) REQUIRE(sum[i] == T(11 * i + 1));
-  add_to_first_quad(sum, middles, firsts, lasts);
-  for (int i = 0; i < 2 * N; ++i) REQUIRE(sum[i] == T(11 * i + 1 + (i < 4 ? i + 1 : 0)));
+  const auto pairs = Pack<T, N>::load(middles);
+  const auto first = Pack<T, N / 2>::load(firsts), last = Pack<T, N / 2>::load(lasts);
+  add_to_quads(quads, pairs, first, last);
+  for (int node = 0; node < N / 2; ++node)
+    for (int c = 0; c < 4; ++c) REQUIRE(quads[4 * node + c] == value<T>(node, c));
+  add_to_first_quad(quads, pairs, first, last);
+  for (int node = 0; node < N / 2; ++node)
+    for (int c = 0; c < 4; ++c) REQUIRE(quads[4 * node + c] == value<T>(node, c) * (node == 0 ? 2 : 1));
 }
 
 TEST_CASE("packs are transposed") {
@@ -66,14 +64,15 @@ TEST_CASE("packs are transposed") {
   check_transpose<float, 4>(), check_transpose<float, 8>(), check_transpose<float, 16>();
 }
 
-TEST_CASE("perfect shuffles turn rows of few values to packs, and back") {
-  check_shuffles<double, 8, 2>(), check_shuffles<double, 8, 4>(), check_shuffles<double, 8, 8>();
-  check_shuffles<double, 4, 2>(), check_shuffles<double, 4, 8>();
-  check_shuffles<float, 16, 2>(), check_shuffles<float, 16, 4>(), check_shuffles<float, 16, 8>();
-  check_shuffles<float, 8, 4>(), check_shuffles<float, 4, 8>();
+TEST_CASE("rows of few or many values are turned to packs of one value, and back") {
+  check_rows<double, 8, 2>(), check_rows<double, 8, 4>(), check_rows<double, 8, 8>();
+  check_rows<double, 4, 2>(), check_rows<double, 4, 4>(), check_rows<double, 4, 8>();
+  check_rows<float, 16, 2>(), check_rows<float, 16, 4>(), check_rows<float, 16, 8>();
+  check_rows<float, 8, 2>(), check_rows<float, 8, 4>(), check_rows<float, 8, 8>();
+  check_rows<float, 4, 2>(), check_rows<float, 4, 4>(), check_rows<float, 4, 8>();
 }
 
-TEST_CASE("the parts of quads are taken out and added again") {
+TEST_CASE("the parts of quads are added to quads") {
   check_quads<double, 4>(), check_quads<double, 8>(), check_quads<float, 4>(), check_quads<float, 8>();
 }
 

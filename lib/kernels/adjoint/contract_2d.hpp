@@ -1,17 +1,17 @@
 #pragma once
 // contract.hpp in 2D.
-#include "kernels/stencil_2d.hpp"
+#include "kernels/gather_2d.hpp"
 
 namespace jaxmpm {
 
-/// Gathers from the nodes of an arena and finds the derivatives of what is gathered by the particles' places.
+/// Gathers from the nodes around a tile and finds the derivatives of what is gathered by the particles' places.
 template <class Sch, bool Masses>
 class Contraction2d {
   using T = typename Sch::T;
   static constexpr int W = batch<T>;
 
  public:
-  explicit Contraction2d(const T* arena) : nodes_(arena) {}
+  explicit Contraction2d(const Nodes2d<Sch, Masses>& nodes) : nodes_(nodes) {}
 
   /// What a gather leaves for the derivatives by place.
   template <class Stencil, class Bars>
@@ -20,7 +20,7 @@ class Contraction2d {
   /// What the stencils t find in the nodes, in the groups of Bars.
   template <class Bars, class Stencil>
   JAXMPM_INLINE void gather(const Stencil& t, int, Pack<T, W>* gathered, Sums<Stencil, Bars>& sums) {
-    nodes_.sum(t, sums);
+    sums.sum(t, nodes_);
     sums.store(gathered);
   }
 
@@ -43,7 +43,7 @@ class Contraction2d {
   }
 
  private:
-  Gather2d<Sch, Masses> nodes_;
+  const Nodes2d<Sch, Masses>& nodes_;
 };
 
 }  // namespace jaxmpm

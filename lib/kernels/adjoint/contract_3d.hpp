@@ -3,7 +3,7 @@
 #include <initializer_list>
 #include <type_traits>
 
-#include "kernels/stencil_3d.hpp"
+#include "kernels/gather_3d.hpp"
 
 namespace jaxmpm {
 
@@ -115,7 +115,7 @@ class Contraction3d {
   static constexpr int W = batch<T>;
 
  public:
-  explicit Contraction3d(const T* arena) : nodes_(arena), gather_(arena) {}
+  explicit Contraction3d(const Nodes3d<Sch>& nodes) : nodes_(nodes), gather_(nodes) {}
 
   template <class Stencil, class Bars>
   struct Sums {};

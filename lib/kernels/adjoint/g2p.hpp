@@ -85,7 +85,7 @@ class G2pAdjoint {
   using T = typename Sch::T;
   using G = GatheredGroups<Sch>;
   using Stencil = Stencils<Sch, Sch::g2p_moments, Sch::g2p_slopes, true>;
-  using Nodes = NodeContraction<Sch, false>;
+  using Contract = NodeContraction<Sch, false>;
   static constexpr int Dim = Sch::Dim, W = batch<T>;
 
  public:
@@ -93,13 +93,13 @@ class G2pAdjoint {
   struct Batch {
     Stencil t;
     Pack<T, W> gathered[G::padded];
-    typename Nodes::template Sums<Stencil, G> sums;
+    typename Contract::template Sums<Stencil, G> sums;
     Batch(const Particles<T, Dim>& p, std::size_t s, int count, const Index<Dim>& origin) : t(p, s, count, origin) {}
   };
 
-  /// `velocities`: the arena that the tile gathered from.
+  /// `velocities`: what the tile gathered from.
   G2pAdjoint(const MaterialAdjoint<T, Dim>& material, const StepConstants<T>& step, const Index<Dim>& origin,
-             const DomainBounds<Dim>& domain, const T* velocities, T* arena)
+             const DomainBounds<Dim>& domain, const Nodes<Sch, false>& velocities, T* arena)
       : material_(material), step_(step), origin_(origin), domain_(domain), velocities_(velocities), bars_(arena) {}
 
   /// Gathers again for `count` particles from s, whose state at the start of the step is p.
@@ -122,14 +122,14 @@ class G2pAdjoint {
   }
 
   /// Once all batches are done.
-  void flush() { bars_.flush(); }
+  void finish() { bars_.finish(); }
 
  private:
   const MaterialAdjoint<T, Dim>& material_;
   const StepConstants<T>& step_;
   const Index<Dim>& origin_;
   const DomainBounds<Dim>& domain_;
-  Nodes velocities_;
+  Contract velocities_;
   Scatter<Sch, false> bars_;
 };
 
@@ -141,7 +141,7 @@ void g2p_adjoint_tile(const Particles<typename Sch::T, Sch::Dim>& p, std::size_t
     auto batch = g2p.gather(p, s, count);
     g2p.reverse(batch, p, s, count, bar, report);
   });
-  g2p.flush();
+  g2p.finish();
 }
 
 /// Adjoint of particles to grid in a step, and then of grid to particles in the step before it: `p` is the state in between, `before` that at
@@ -160,7 +160,7 @@ void between_steps_adjoint_tile(Particles<typename Sch::T, Sch::Dim>& p, const P
     p2g.reverse(p, s, count, bar, p2g_report);
     g2p.reverse(batch, before, s, count, bar, g2p_report);
   });
-  g2p.flush();
+  g2p.finish();
 }
 
 }  // namespace jaxmpm

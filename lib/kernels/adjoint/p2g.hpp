@@ -81,8 +81,8 @@ JAXMPM_INLINE void coefficients_adjoint(const Particles<typename Sch::T, Sch::Di
   material_adjoint.stress(p, s, count, by_sigma, bar, report);
 }
 
-/// Adjoint of p2g_tile, a batch after the other: adds to `bar` what the derivatives by the nodes' sums, in `arena` ({m̄, p̄}, and {–, impulse}
-/// of a second plane), bring.
+/// Adjoint of p2g_tile, a batch after the other: adds to `bar` what the derivatives by the nodes' sums ({m̄, p̄}, and {–, impulse} of a second
+/// plane) bring.
 template <class Sch>
 class P2gAdjoint {
   using T = typename Sch::T;
@@ -92,8 +92,8 @@ class P2gAdjoint {
 
  public:
   P2gAdjoint(const MaterialKernel<T, Dim>& material, const MaterialAdjoint<T, Dim>& material_adjoint, const StepConstants<T>& step,
-             const Index<Dim>& origin, const T* arena)
-      : material_(material), material_adjoint_(material_adjoint), step_(step), origin_(origin), nodes_(arena) {}
+             const Index<Dim>& origin, const Nodes<Sch, true>& by_sums)
+      : material_(material), material_adjoint_(material_adjoint), step_(step), origin_(origin), nodes_(by_sums) {}
 
   template <class Count>
   JAXMPM_ONCE void reverse(const Particles<T, Dim>& p, std::size_t s, Count count, Particles<T, Dim>& bar, MaterialReport& report) {

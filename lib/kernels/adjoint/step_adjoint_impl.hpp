@@ -14,25 +14,22 @@ AdjointKernels<typename Sch::T, Sch::Dim> adjoint_kernels_of() {
   k.g2p = [](const Particles<T, Dim>& p, const Tile& tile, const Blocks<Dim>& blocks, const T* grid,
              const MaterialAdjoint<T, Dim>& material, const StepConstants<T>& step, const Index<Dim>& origin,
              const DomainBounds<Dim>& domain, T* arena, Particles<T, Dim>& bar, AdjointReport& report) {
-    alignas(64) T velocities[Sch::arena_size];
-    load_arena<Sch>(blocks, tile.block, grid, velocities);
+    const Nodes<Sch, false> velocities(blocks, tile.block, grid);
     g2p_adjoint_tile<Sch>(p, tile.begin, tile.end, {material, step, origin, domain, velocities, arena}, bar, report);
   };
   k.p2g = [](const Particles<T, Dim>& p, const Tile& tile, const Blocks<Dim>& blocks, const T* by_sums,
              const MaterialKernel<T, Dim>& material, const MaterialAdjoint<T, Dim>& adjoint, const StepConstants<T>& step,
              const Index<Dim>& origin, Particles<T, Dim>& bar, MaterialReport& report) {
-    alignas(64) T arena[Sch::arena_size];
-    load_arena<Sch>(blocks, tile.block, by_sums, arena);
-    p2g_adjoint_tile<Sch>(p, tile.begin, tile.end, {material, adjoint, step, origin, arena}, bar, report);
+    const Nodes<Sch, true> bars(blocks, tile.block, by_sums);
+    p2g_adjoint_tile<Sch>(p, tile.begin, tile.end, {material, adjoint, step, origin, bars}, bar, report);
   };
   if constexpr (!Sch::flip && !Sch::dilation)
     k.between_steps = [](Particles<T, Dim>& p, const Particles<T, Dim>& before, const Tile& tile, const Blocks<Dim>& blocks,
                          const MaterialKernel<T, Dim>& material, const MaterialAdjoint<T, Dim>& adjoint, const Index<Dim>& origin,
                          const DomainBounds<Dim>& domain, T* arena, Particles<T, Dim>& bar,
                          const typename AdjointKernels<T, Dim>::Between& of) {
-      alignas(64) T velocities[Sch::arena_size], by_sums[Sch::arena_size];
-      load_arena<Sch>(blocks, tile.block, of.grid, velocities);
-      load_arena<Sch>(blocks, tile.block, of.by_sums, by_sums);
+      const Nodes<Sch, false> velocities(blocks, tile.block, of.grid);
+      const Nodes<Sch, true> by_sums(blocks, tile.block, of.by_sums);
       between_steps_adjoint_tile<Sch>(p, before, tile.begin, tile.end, {material, adjoint, of.after, origin, by_sums},
                                       {adjoint, of.before, origin, domain, velocities, arena}, of.before, bar, of.p2g, of.g2p);
     };
