@@ -30,7 +30,7 @@ class Front : public Gauge {
   std::vector<Channel> channels() const override { return {{"value", "m", {}, {}}}; }
   FieldSelection needs() const override { return gauge_.depth ? selection({"density"}) : FieldSelection{}; }
   Sample measure(const Scene& scene, const std::vector<double>*) const override {
-    const Reach reach = reach_of(scene.bodies[body_]);
+    const Reach reach = reach_of(scene.bodies[body_], false);
     const double sign = direction();
     Sample sample = gauge_.depth
                         ? depth_front(reach.material, *gauge_.depth, width_, model_.cell_size, [&](double s) { return breadth(sign * s); })
@@ -40,7 +40,7 @@ class Front : public Gauge {
   }
   void gradient(const Scene& scene, const Sample& reading, const double* by_values, SnapshotGradient& into) const override {
     const BodySnapshot& body = scene.bodies[body_];
-    const Reach reach = reach_of(body);
+    const Reach reach = reach_of(body, true);
     const double s = direction() * reading.values[0], by_s = direction() * by_values[0];
     const std::vector<AlongGradient> along =
         gauge_.depth ? depth_front_gradient(reach.material, s, *gauge_.depth, width_, breadth(reading.values[0]), breadth_slope(s))
@@ -59,21 +59,21 @@ class Front : public Gauge {
   }
 
  private:
-  /// The body's material along the coordinate, towards the front, and the particles it belongs to.
+  /// The body's material along the coordinate, towards the front, and the particles it belongs to, if asked for.
   struct Reach {
     std::vector<Along> material;
     std::vector<std::size_t> particle;
   };
-  Reach reach_of(const BodySnapshot& body) const {
-    const std::vector<bool> kept = gauge_.connected ? in_largest_cluster(body, model_) : std::vector<bool>(body.id.size(), true);
+  Reach reach_of(const BodySnapshot& body, bool with_particles) const {
+    const std::vector<bool> kept = gauge_.connected ? in_largest_cluster(body, model_) : std::vector<bool>{};
     Reach reach;
     reach.material.reserve(body.id.size());
-    reach.particle.reserve(body.id.size());
+    reach.particle.reserve(with_particles ? body.id.size() : 0);
     for (std::size_t p = 0; p < body.id.size(); ++p) {
-      if (!kept[p]) continue;
+      if (gauge_.connected && !kept[p]) continue;
       reach.material.push_back(
           {direction() * coordinate(&body.position[p * model_.dim]), gauge_.depth ? body.mass[p] / body.density[p] : body.mass[p]});
-      reach.particle.push_back(p);
+      if (with_particles) reach.particle.push_back(p);
     }
     return reach;
   }

@@ -48,6 +48,23 @@ double sharp_quantile(Window window, double wanted) {
   return window.near.back().s;
 }
 
+/// Where the smooth sum reaches `wanted`, between low and high: Newton's method, halving where it would leave them.
+double smooth_quantile(const Window& window, double wanted, double width, double low, double high) {
+  double s = 0.5 * (low + high);
+  for (int step = 0; step < 60; ++step) {
+    double missing = wanted - window.behind, slope = 0;
+    for (const Along& p : window.near) {
+      const double r = (s - p.s) / width;
+      missing -= p.amount * spline_step(r), slope += p.amount * spline(r) / width;
+    }
+    (missing > 0 ? low : high) = s;
+    const double newton = s + missing / slope;  // no number, or infinite, where nothing is near
+    if (std::abs(newton - s) <= 1e-15 * (std::abs(s) + width)) return newton;
+    s = newton > low && newton < high ? newton : 0.5 * (low + high);
+  }
+  return s;
+}
+
 template <class Behind>
 double bisect(double low, double high, const Behind& behind) {
   for (int halving = 0; halving < 60; ++halving) (behind(0.5 * (low + high)) ? high : low) = 0.5 * (low + high);
@@ -70,12 +87,7 @@ Sample quantile_front(const std::vector<Along>& material, double quantile, doubl
   const double high = bins.begin + (static_cast<double>(bin) + 2) * bins.size + 1.5 * width;
   const Window window(material, low - 1.5 * width, high + 1.5 * width);
   if (width == 0) return {true, {sharp_quantile(window, wanted)}};
-  const auto behind = [&](double s) {
-    double amount = window.behind;
-    for (const Along& p : window.near) amount += p.amount * spline_step((s - p.s) / width);
-    return amount >= wanted;
-  };
-  return {true, {bisect(low, high, behind)}};
+  return {true, {smooth_quantile(window, wanted, width, low, high)}};
 }
 
 Sample depth_front(const std::vector<Along>& material, double depth, double width, double cell_size,

@@ -55,11 +55,11 @@ bool GaugeSet::needs_forces() const {
 
 void GaugeSet::measure(const Moment& now, const Solver& solver) {
   if (gauges_.empty()) return;
-  const std::vector<BodySnapshot> all = anywhere_.wanted ? solver.snapshot(anywhere_.fields, false) : std::vector<BodySnapshot>{};
+  if (anywhere_.wanted) solver.take_snapshot(anywhere_.fields, false, all_);
   const std::vector<BodySnapshot> near = nearby_.wanted ? solver.snapshot_within(regions_, nearby_.fields) : std::vector<BodySnapshot>{};
   const ContactForces forces = needs_forces() ? solver.forces() : ContactForces{};
   const Dissipation dissipation = solver.dissipation();
-  const Scene everywhere{now, all, forces, dissipation}, nearby{now, near, forces, dissipation};
+  const Scene everywhere{now, all_, forces, dissipation}, nearby{now, near, forces, dissipation};
   std::vector<const std::string*> names;
   for (const auto& entry : gauges_) names.push_back(&entry.first);
   std::vector<Sample> samples(names.size());

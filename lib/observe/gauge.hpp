@@ -90,6 +90,7 @@ class GaugeSet {
   };
   Look anywhere_, nearby_;
   std::vector<Region> regions_;
+  std::vector<BodySnapshot> all_;  // what gauges that look anywhere see
 };
 
 }  // namespace jaxmpm

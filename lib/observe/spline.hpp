@@ -25,8 +25,9 @@ inline double spline_slope(double r) {
 inline double spline_step(double r) {
   if (r <= -1.5) return 0;
   if (r >= 1.5) return 1;
-  if (r < -0.5) return std::pow(r + 1.5, 3) / 6;
-  return r < 0.5 ? 0.5 + 0.75 * r - r * r * r / 3 : 1 - std::pow(1.5 - r, 3) / 6;
+  const double cube = (1.5 - std::abs(r)) * (1.5 - std::abs(r)) * (1.5 - std::abs(r));
+  if (r < -0.5) return cube / 6;
+  return r < 0.5 ? 0.5 + 0.75 * r - r * r * r / 3 : 1 - cube / 6;
 }
 
 /// Weight at x of material at xp between walls at `low` and `high`, with its mirror images behind them, so that a full column weighs as

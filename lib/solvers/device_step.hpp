@@ -84,7 +84,7 @@ class DeviceStep : public Solver {
   double stable_step() const override;
 
   std::uint64_t particle_count() const override;
-  std::vector<BodySnapshot> snapshot(const FieldSelection& fields, bool ordered) const override;
+  void take_snapshot(const FieldSelection& fields, bool ordered, std::vector<BodySnapshot>& bodies) const override;
   std::vector<BodySnapshot> snapshot_within(const std::vector<Region>& regions, const FieldSelection& fields) const override;
   void record_forces(bool on) override;
   ContactForces forces() const override;

@@ -188,13 +188,12 @@ std::vector<Particles<T, Dim>> DeviceStep<T, Dim, Space>::bodies_on_host() const
 }
 
 template <class T, int Dim, class Space>
-std::vector<BodySnapshot> DeviceStep<T, Dim, Space>::snapshot(const FieldSelection& fields, bool ordered) const {
-  std::vector<BodySnapshot> out;
+void DeviceStep<T, Dim, Space>::take_snapshot(const FieldSelection& fields, bool ordered, std::vector<BodySnapshot>& bodies) const {
+  bodies.resize(bodies_.size());
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const Particles<T, Dim> particles = bodies_[b].particles.on_host();
-    out.push_back(body_snapshot<T, Dim>(model_, model_.bodies[b], *materials_[b], particles, fields, all_slots(particles, ordered)));
+    take_body_snapshot<T, Dim>(model_, model_.bodies[b], *materials_[b], particles, fields, all_slots(particles, ordered), bodies[b]);
   }
-  return out;
 }
 
 /// Only the particles of the regions leave the device.
@@ -202,10 +201,10 @@ template <class T, int Dim, class Space>
 std::vector<BodySnapshot> DeviceStep<T, Dim, Space>::snapshot_within(const std::vector<Region>& regions,
                                                                      const FieldSelection& fields) const {
   const std::vector<Slots> slots = slots_within(model_, blocks_, numbers_.drift, regions);
-  std::vector<BodySnapshot> out;
+  std::vector<BodySnapshot> out(bodies_.size());
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const Particles<T, Dim> particles = bodies_[b].particles.on_host(space_, slots[b]);
-    out.push_back(body_snapshot<T, Dim>(model_, model_.bodies[b], *materials_[b], particles, fields, all_slots(particles, false)));
+    take_body_snapshot<T, Dim>(model_, model_.bodies[b], *materials_[b], particles, fields, all_slots(particles, false), out[b]);
   }
   return out;
 }

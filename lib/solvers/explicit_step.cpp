@@ -241,19 +241,18 @@ ContactForces ExplicitStep<T, Dim>::forces() const {
 }
 
 template <class T, int Dim>
-std::vector<BodySnapshot> ExplicitStep<T, Dim>::snapshot(const FieldSelection& fields, bool ordered) const {
-  std::vector<BodySnapshot> out;
+void ExplicitStep<T, Dim>::take_snapshot(const FieldSelection& fields, bool ordered, std::vector<BodySnapshot>& bodies) const {
+  bodies.resize(bodies_.size());
   for (std::size_t b = 0; b < bodies_.size(); ++b)
-    out.push_back(body_snapshot<T, Dim>(model_, model_.bodies[b], *materials_[b], bodies_[b], fields, all_slots(bodies_[b], ordered)));
-  return out;
+    take_body_snapshot<T, Dim>(model_, model_.bodies[b], *materials_[b], bodies_[b], fields, all_slots(bodies_[b], ordered), bodies[b]);
 }
 
 template <class T, int Dim>
 std::vector<BodySnapshot> ExplicitStep<T, Dim>::snapshot_within(const std::vector<Region>& regions, const FieldSelection& fields) const {
   const std::vector<Slots> slots = slots_within(model_, blocks_, numbers_.drift, regions);
-  std::vector<BodySnapshot> out;
+  std::vector<BodySnapshot> out(bodies_.size());
   for (std::size_t b = 0; b < bodies_.size(); ++b)
-    out.push_back(body_snapshot<T, Dim>(model_, model_.bodies[b], *materials_[b], bodies_[b], fields, slots[b]));
+    take_body_snapshot<T, Dim>(model_, model_.bodies[b], *materials_[b], bodies_[b], fields, slots[b], out[b]);
   return out;
 }
 

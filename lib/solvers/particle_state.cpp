@@ -95,10 +95,9 @@ std::vector<Slots> slots_within(const Model& model, const Blocks<Dim>& blocks, d
 }
 
 template <class T, int Dim>
-BodySnapshot body_snapshot(const Model& model, const Body& body, const MaterialKernel<T, Dim>& material, const Particles<T, Dim>& p,
-                           const FieldSelection& fields, const Slots& slots) {
+void take_body_snapshot(const Model& model, const Body& body, const MaterialKernel<T, Dim>& material, const Particles<T, Dim>& p,
+                        const FieldSelection& fields, const Slots& slots, BodySnapshot& s) {
   const std::size_t n = slots.size(), history = std::size_t(material.history_size());
-  BodySnapshot s;
   const bool stress = fields.stress || fields.pressure;
   s.id.resize(n), s.position.resize(n * Dim), s.mass.resize(n);
   s.velocity.resize(fields.velocity ? n * Dim : 0);
@@ -132,7 +131,6 @@ BodySnapshot body_snapshot(const Model& model, const Body& body, const MaterialK
     if (fields.plastic_strain) s.plastic_strain[i] = material.plastic_strain_index() < 0 ? 0.0 : state[material.plastic_strain_index()];
     if (fields.energy) s.strain_energy[i] = material.energy(e, state) * s.volume[i];
   });
-  return s;
 }
 
 template <class T, int Dim>
@@ -231,8 +229,8 @@ template std::vector<Slots> slots_within(const Model&, const Blocks<3>&, double,
 template Particles<float, 2> first_particles(const Model&, const Body&, const MaterialKernel<float, 2>&, double&);
 template double stable_step(const Model&, const MaterialKernels<float, 2>&, double);
 template Slots all_slots(const Particles<float, 2>&, bool);
-template BodySnapshot body_snapshot(const Model&, const Body&, const MaterialKernel<float, 2>&, const Particles<float, 2>&,
-                                    const FieldSelection&, const Slots&);
+template void take_body_snapshot(const Model&, const Body&, const MaterialKernel<float, 2>&, const Particles<float, 2>&,
+                                 const FieldSelection&, const Slots&, BodySnapshot&);
 template std::vector<RawArray> save_state(const std::vector<Particles<float, 2>>&, const std::vector<Tile>&,
                                           const std::vector<std::int64_t>&, const StepNumbers&);
 template void restore_state(const std::vector<RawArray>&, std::vector<Particles<float, 2>>&, std::vector<Tile>&, std::vector<std::int64_t>&,
@@ -244,8 +242,8 @@ template void check_particles(const Model&, const Body&, const MaterialKernel<fl
 template Particles<float, 3> first_particles(const Model&, const Body&, const MaterialKernel<float, 3>&, double&);
 template double stable_step(const Model&, const MaterialKernels<float, 3>&, double);
 template Slots all_slots(const Particles<float, 3>&, bool);
-template BodySnapshot body_snapshot(const Model&, const Body&, const MaterialKernel<float, 3>&, const Particles<float, 3>&,
-                                    const FieldSelection&, const Slots&);
+template void take_body_snapshot(const Model&, const Body&, const MaterialKernel<float, 3>&, const Particles<float, 3>&,
+                                 const FieldSelection&, const Slots&, BodySnapshot&);
 template std::vector<RawArray> save_state(const std::vector<Particles<float, 3>>&, const std::vector<Tile>&,
                                           const std::vector<std::int64_t>&, const StepNumbers&);
 template void restore_state(const std::vector<RawArray>&, std::vector<Particles<float, 3>>&, std::vector<Tile>&, std::vector<std::int64_t>&,
@@ -257,8 +255,8 @@ template void check_particles(const Model&, const Body&, const MaterialKernel<fl
 template Particles<double, 2> first_particles(const Model&, const Body&, const MaterialKernel<double, 2>&, double&);
 template double stable_step(const Model&, const MaterialKernels<double, 2>&, double);
 template Slots all_slots(const Particles<double, 2>&, bool);
-template BodySnapshot body_snapshot(const Model&, const Body&, const MaterialKernel<double, 2>&, const Particles<double, 2>&,
-                                    const FieldSelection&, const Slots&);
+template void take_body_snapshot(const Model&, const Body&, const MaterialKernel<double, 2>&, const Particles<double, 2>&,
+                                 const FieldSelection&, const Slots&, BodySnapshot&);
 template std::vector<RawArray> save_state(const std::vector<Particles<double, 2>>&, const std::vector<Tile>&,
                                           const std::vector<std::int64_t>&, const StepNumbers&);
 template void restore_state(const std::vector<RawArray>&, std::vector<Particles<double, 2>>&, std::vector<Tile>&,
@@ -270,8 +268,8 @@ template void check_particles(const Model&, const Body&, const MaterialKernel<do
 template Particles<double, 3> first_particles(const Model&, const Body&, const MaterialKernel<double, 3>&, double&);
 template double stable_step(const Model&, const MaterialKernels<double, 3>&, double);
 template Slots all_slots(const Particles<double, 3>&, bool);
-template BodySnapshot body_snapshot(const Model&, const Body&, const MaterialKernel<double, 3>&, const Particles<double, 3>&,
-                                    const FieldSelection&, const Slots&);
+template void take_body_snapshot(const Model&, const Body&, const MaterialKernel<double, 3>&, const Particles<double, 3>&,
+                                 const FieldSelection&, const Slots&, BodySnapshot&);
 template std::vector<RawArray> save_state(const std::vector<Particles<double, 3>>&, const std::vector<Tile>&,
                                           const std::vector<std::int64_t>&, const StepNumbers&);
 template void restore_state(const std::vector<RawArray>&, std::vector<Particles<double, 3>>&, std::vector<Tile>&,

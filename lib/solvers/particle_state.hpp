@@ -38,10 +38,10 @@ Slots all_slots(const Particles<T, Dim>& particles, bool ordered);
 template <int Dim>
 std::vector<Slots> slots_within(const Model& model, const Blocks<Dim>& blocks, double drift, const std::vector<Region>& regions);
 
-/// Fields of some particles of a body in deck coordinates, in the order of their slots.
+/// Fields of some particles of a body in deck coordinates, in the order of their slots, into a snapshot whose memory is used again.
 template <class T, int Dim>
-BodySnapshot body_snapshot(const Model& model, const Body& body, const MaterialKernel<T, Dim>& material, const Particles<T, Dim>& particles,
-                           const FieldSelection& fields, const Slots& slots);
+void take_body_snapshot(const Model& model, const Body& body, const MaterialKernel<T, Dim>& material, const Particles<T, Dim>& particles,
+                        const FieldSelection& fields, const Slots& slots, BodySnapshot& snapshot);
 
 /// Arrays of a checkpoint, and back. Particles drift after a sort: which tile they belong to is state. restore_state() wants bodies of the
 /// right sizes, except where some particles `may_have_left`; throws IoError when arrays are missing or do not fit.

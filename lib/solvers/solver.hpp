@@ -67,7 +67,13 @@ class Solver {
   virtual void step(double dt) = 0;
   virtual std::uint64_t particle_count() const = 0;
   /// Fields of every body, in deck order; `ordered` sorts by id, otherwise storage order (a deterministic one).
-  virtual std::vector<BodySnapshot> snapshot(const FieldSelection& fields, bool ordered) const = 0;
+  std::vector<BodySnapshot> snapshot(const FieldSelection& fields, bool ordered) const {
+    std::vector<BodySnapshot> bodies;
+    take_snapshot(fields, ordered, bodies);
+    return bodies;
+  }
+  /// The same into the memory of an earlier one, which need not be cleared by the system then.
+  virtual void take_snapshot(const FieldSelection& fields, bool ordered, std::vector<BodySnapshot>& bodies) const = 0;
   /// The same of all particles within the regions, and maybe of others around them, in storage order: what a look at few places costs.
   virtual std::vector<BodySnapshot> snapshot_within(const std::vector<Region>& regions, const FieldSelection& fields) const = 0;
   /// Forces are gathered only after this is switched on (it costs a little).

@@ -62,7 +62,7 @@ class Ballistic : public Solver {
   std::vector<BodySnapshot> snapshot_within(const std::vector<Region>&, const FieldSelection& fields) const override {
     return snapshot(fields, false);
   }
-  std::vector<BodySnapshot> snapshot(const FieldSelection&, bool) const override {
+  void take_snapshot(const FieldSelection&, bool, std::vector<BodySnapshot>& bodies) const override {
     BodySnapshot s;
     const std::size_t n = particle_count();
     for (std::size_t p = 0; p < n; ++p) s.id.push_back(static_cast<std::uint32_t>(p));
@@ -76,7 +76,7 @@ class Ballistic : public Solver {
     s.velocity_gradient.assign(4 * n, 0.0);
     s.plastic_strain.assign(n, 0.0);
     s.strain_energy.assign(n, 0.0);
-    return {s};
+    bodies = {s};
   }
   void record_forces(bool) override {}
   ContactForces forces() const override { return {}; }
