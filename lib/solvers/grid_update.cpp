@@ -26,7 +26,10 @@ GridUpdate<T, Dim>::GridUpdate(const Model& model, const StepKernels<T, Dim>& ke
       kernels_(kernels),
       contact_blocks_(model),
       walls_(contact_blocks_.table().view()),
-      mass_cut_off_(T(mass_cut_off(model))) {}
+      mass_cut_off_(T(mass_cut_off(model))),
+      packed_(kernels_.planes) {
+  static_assert(cells == PackedSums<T>::cells);
+}
 
 template <class T, int Dim>
 void GridUpdate<T, Dim>::rebuild(const Blocks<Dim>& blocks) {
@@ -86,7 +89,6 @@ T* GridUpdate<T, Dim>::place_of_sums(std::size_t b) {
 template <class T, int Dim>
 void GridUpdate<T, Dim>::update(const Blocks<Dim>& blocks, const T* arenas, double dt, double time) {
   if (keep_sums_) sums_.resize(blocks.count() * kernels_.own_size);
-  found_ = sums_.data();
   const auto sums_of = [&](std::size_t b) {
     T* to = place_of_sums(b);
     kernels_.sum(blocks, b, arenas, to);
@@ -96,21 +98,15 @@ void GridUpdate<T, Dim>::update(const Blocks<Dim>& blocks, const T* arenas, doub
 }
 
 template <class T, int Dim>
-void GridUpdate<T, Dim>::update_again(const Blocks<Dim>& blocks, const T* sums, double dt, double time) {
-  const std::size_t size = kernels_.own_size;
-  found_ = sums;
+void GridUpdate<T, Dim>::update_again(const Blocks<Dim>& blocks, const std::byte* packed, double dt, double time) {
+  sums_.resize(blocks.count() * kernels_.own_size);
+  packed_.open(blocks.count(), packed);
   const auto sums_of = [&](std::size_t b) {
-    if (contact_blocks_.wall_slot()[b] >= 0) std::memcpy(place_of_sums(b), sums + b * size, sizeof(T) * size);
-    return sums + b * size;
+    T* to = place_of_sums(b);
+    packed_.unpack(b, to);
+    return to;
   };
   update_from(blocks, sums_of, dt, time);
-}
-
-template <class T, int Dim>
-void GridUpdate<T, Dim>::copy_sums(T* to) const {
-  const std::size_t size = kernels_.own_size;
-  parallel_for_host_static("jaxmpm::copy_sums", sums_size() / size,
-                           [&](std::size_t b) { std::memcpy(to + b * size, sums(b), sizeof(T) * size); });
 }
 
 /// `sums_of(b)` gives the sums of a block's own nodes, and sees to it that those of wall blocks are where neighbours look for them.

@@ -5,6 +5,7 @@
 #include "kernels/step_kernels.hpp"
 #include "kernels/wall_node.hpp"
 #include "solvers/contact_blocks.hpp"
+#include "solvers/packed_sums.hpp"
 #include "solvers/solver.hpp"
 
 namespace jaxmpm {
@@ -31,8 +32,8 @@ class GridUpdate {
   /// Sums the arenas and turns them into velocities: afterwards grid() holds {–, v} (and a second plane's {–, Δv}) of every block that is
   /// updated. `time`: that of the step's beginning, s.
   void update(const Blocks<Dim>& blocks, const T* arenas, double dt, double time);
-  /// The same from sums that copy_sums() gave, to the same bits. They have to stay where they are until the next update.
-  void update_again(const Blocks<Dim>& blocks, const T* sums, double dt, double time);
+  /// The same from sums that pack_sums() gave, to the same bits; they are kept.
+  void update_again(const Blocks<Dim>& blocks, const std::byte* packed, double dt, double time);
   const T* grid() const { return grid_.data(); }
 
   void record_contact(bool on) { recording_ = on; }
@@ -41,11 +42,15 @@ class GridUpdate {
   /// Sums {m, p} (and a second plane's {–, impulse}) of a block's own nodes before the update.
   const T* sums(std::size_t b) const {
     const int slot = contact_blocks_.wall_slot()[b];
-    return slot >= 0 ? raw_.data() + std::size_t(slot) * kernels_.own_size : found_ + b * kernels_.own_size;
+    return slot >= 0 ? raw_.data() + std::size_t(slot) * kernels_.own_size : sums_.data() + b * kernels_.own_size;
   }
-  /// Sums of all blocks, in their order: sums_size() numbers.
-  std::size_t sums_size() const { return grid_.size(); }
-  void copy_sums(T* to) const;
+  /// The sums of all blocks without what is zero, and the bytes that those of so many blocks take at most.
+  void pack_sums(std::byte* to) {
+    packed_.pack(
+        contact_.size(), [&](std::size_t b) { return sums(b); }, to);
+  }
+  std::size_t packed_bytes(std::size_t blocks) const { return packed_.most_bytes(blocks); }
+  std::size_t block_count() const { return contact_.size(); }
   /// Those of a block at walls and its neighbours, with Δt g.
   WallSums<T, Dim> wall_sums(const Blocks<Dim>& blocks, std::size_t b, const GridConstants<T, Dim>& constants) const;
   GridConstants<T, Dim> constants(double dt) const { return grid_constants<T, Dim>(model_, mass_cut_off_, dt); }
@@ -91,7 +96,7 @@ class GridUpdate {
   T mass_cut_off_;
   Array<T> grid_, raw_, sums_;  // [block][own], [wall block][own], [block][own] where kept
   Array<T> force_;              // [block][own node][Dim]: Δt b, m/s, where there is a body force
-  const T* found_ = nullptr;    // what the last update found, away from walls: sums_, or the sums given to it
+  PackedSums<T> packed_;        // the masks of the last ones
   bool keep_sums_ = false;
   bool recording_ = false;
   std::vector<std::uint32_t> summed_, at_walls_;  // blocks whose arenas are added up, and those whose wall nodes are updated

@@ -103,7 +103,7 @@ void ReversibleStep<T, Dim>::end_reverse() {
 
 template <class T, int Dim>
 void ReversibleStep<T, Dim>::update_grid_again(const Kept& kept, const std::byte* numbers, double dt) {
-  this->grid_.update_again(this->blocks_, reinterpret_cast<const T*>(numbers + particle_bytes(kept.lean)), dt, kept.numbers.time);
+  this->grid_.update_again(this->blocks_, numbers + particle_bytes(kept.lean), dt, kept.numbers.time);
 }
 
 template <class T, int Dim>
@@ -216,15 +216,15 @@ std::size_t ReversibleStep<T, Dim>::particle_bytes(bool lean) const {
 
 template <class T, int Dim>
 void ReversibleStep<T, Dim>::expect_blocks(std::size_t most) {
-  room_for_sums_ = most * this->kernels_.own_size * sizeof(T);
+  room_for_sums_ = this->grid_.packed_bytes(most);
   this->grid_.keep_sums();
 }
 
 template <class T, int Dim>
 void ReversibleStep<T, Dim>::keep_sums(KeptState& state, std::byte* numbers) {
-  if (this->grid_.sums_size() * sizeof(T) > room_for_sums_) return;
+  if (this->grid_.packed_bytes(this->grid_.block_count()) > room_for_sums_) return;
   Kept& kept = static_cast<Kept&>(state);
-  this->grid_.copy_sums(reinterpret_cast<T*>(numbers + particle_bytes(kept.lean)));
+  this->grid_.pack_sums(numbers + particle_bytes(kept.lean));
   kept.has_sums = true;
   sums_kept_ = true;
 }
