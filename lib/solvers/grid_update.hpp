@@ -50,7 +50,6 @@ class GridUpdate {
         contact_.size(), [&](std::size_t b) { return sums(b); }, to);
   }
   std::size_t packed_bytes(std::size_t blocks) const { return packed_.most_bytes(blocks); }
-  std::size_t block_count() const { return contact_.size(); }
   /// Those of a block at walls and its neighbours, with Δt g.
   WallSums<T, Dim> wall_sums(const Blocks<Dim>& blocks, std::size_t b, const GridConstants<T, Dim>& constants) const;
   GridConstants<T, Dim> constants(double dt) const { return grid_constants<T, Dim>(model_, mass_cut_off_, dt); }

@@ -222,7 +222,7 @@ void ReversibleStep<T, Dim>::expect_blocks(std::size_t most) {
 
 template <class T, int Dim>
 void ReversibleStep<T, Dim>::keep_sums(KeptState& state, std::byte* numbers) {
-  if (this->grid_.packed_bytes(this->grid_.block_count()) > room_for_sums_) return;
+  if (this->grid_.packed_bytes(this->blocks_.count()) > room_for_sums_) return;
   Kept& kept = static_cast<Kept&>(state);
   this->grid_.pack_sums(numbers + particle_bytes(kept.lean));
   kept.has_sums = true;
