@@ -117,7 +117,7 @@ class Run {
 
  private:
   void prepare() {
-    if (from_) solver_->restore(from_->state);
+    if (from_) solver_->restore(*from_->state);
     directory_.prepare(deck_.output.formats);
     if (from_) {
       adopt_frames(options_, directory_, *from_);
@@ -140,7 +140,7 @@ class Run {
     json.update(cost_summary(model_, *solver_, backend_, outcome.steps, outcome.seconds - start.seconds, solver_->phase_seconds()));
     json["cpu_seconds"] = outcome.cpu_seconds;
     const OutputSeconds& output = outcome.output;
-    json["seconds_by_output"] = {{"frames", output.frames}, {"gauges", output.gauges}, {"checkpoints", output.checkpoints}};
+    json["seconds_by_output"] = {{"frames", output.frames}, {"gauges", output.gauges}, {"checkpoints", output.checkpoints}, {"beside", output.beside}};
     write_file(directory_.summary(), json.dump(2) + "\n");
   }
 

@@ -1,7 +1,9 @@
 #pragma once
 // Labelled parallel loops on the host's threads, behind two plain functions: the sources that run them need not compile Kokkos's headers.
+#include <algorithm>
 #include <cstddef>
 #include <string>
+#include <vector>
 
 namespace jaxmpm {
 
@@ -28,6 +30,16 @@ void parallel_for_host(const std::string& label, std::size_t n, const F& f) {
 template <class F>
 void parallel_for_host_static(const std::string& label, std::size_t n, const F& f) {
   run_static(label, n, &run_part<F>, &f);
+}
+
+/// f(begin, end) for pieces of 0 … n−1 of one size, side by side. Their values are in order, so that what is added of them has the same bits
+/// with any number of threads.
+template <class F>
+auto in_pieces(const std::string& label, std::size_t n, const F& f) {
+  constexpr std::size_t size = 2048;
+  std::vector<decltype(f(std::size_t(0), n))> values((n + size - 1) / size);
+  parallel_for_host(label, values.size(), [&](std::size_t k) { values[k] = f(k * size, std::min(n, (k + 1) * size)); });
+  return values;
 }
 
 }  // namespace jaxmpm

@@ -1,8 +1,12 @@
 #include "core/runtime.hpp"
 
+#include <omp.h>
+#include <sched.h>
+
 #include <Kokkos_Core.hpp>
 #include <ctime>
 #include <string>
+#include <vector>
 
 #include "core/error.hpp"
 
@@ -29,6 +33,19 @@ Runtime::Runtime(std::optional<int> threads) {
 Runtime::~Runtime() { Kokkos::finalize(); }
 
 int thread_count() { return Kokkos::DefaultHostExecutionSpace().concurrency(); }
+
+void leave_place() {
+#if defined(__linux__)
+  cpu_set_t all;
+  CPU_ZERO(&all);
+  for (int place = 0; place < omp_get_num_places(); ++place) {
+    std::vector<int> processors(std::size_t(omp_get_place_num_procs(place)));
+    omp_get_place_proc_ids(place, processors.data());
+    for (const int processor : processors) CPU_SET(processor, &all);
+  }
+  if (CPU_COUNT(&all) > 0) sched_setaffinity(0, sizeof(all), &all);  // without places threads are bound to nothing
+#endif
+}
 
 double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 

@@ -17,6 +17,9 @@ class Runtime {
 /// Host threads in use.
 int thread_count();
 
+/// Lets the calling thread run on all processors that the process may use, where OpenMP has bound the thread that started it to one.
+void leave_place();
+
 /// Processor time of all threads so far, s. Unlike time by the clock it leaves out what other programs had of the processors.
 double processor_seconds();
 

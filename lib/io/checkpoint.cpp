@@ -81,7 +81,7 @@ GaugeSeries read_gauge(const hdf5::Reader& file, const std::string& group) {
 }  // namespace
 
 void write_checkpoint(const std::string& path, const Checkpoint& checkpoint) {
-  require_finite(checkpoint.state, checkpoint.at);
+  require_finite(*checkpoint.state, checkpoint.at);
   hdf5::Writer file(path);
   file.attribute("/", "kind", std::string(kind));
   file.attribute("/", "format", checkpoint_format);
@@ -98,8 +98,8 @@ void write_checkpoint(const std::string& path, const Checkpoint& checkpoint) {
   file.group("/gauges");
   for (const auto& [name, series] : checkpoint.gauges) write_gauge(file, "/gauges/" + name, series);
   file.group("/state");
-  for (std::size_t n = 0; n < checkpoint.state.size(); ++n) {
-    const RawArray& array = checkpoint.state[n];
+  for (std::size_t n = 0; n < checkpoint.state->size(); ++n) {
+    const RawArray& array = (*checkpoint.state)[n];
     const std::string place = "/state/" + frame_name(n);  // the solver's own names may hold slashes
     file.text(place + "/name", array.name);
     file.dataset(place + "/values", array.type, array.shape, array.bytes.data(), hdf5::Storage::checked);
@@ -121,11 +121,13 @@ Checkpoint read_checkpoint(const std::string& path) {
   found.backend = file.text("/backend");
   found.frames = read_frames(file);
   for (const std::string& name : file.names("/gauges")) found.gauges[name] = read_gauge(file, "/gauges/" + name);
+  std::vector<RawArray> state;
   for (const std::string& name : file.names("/state")) {
     const std::string place = "/state/" + name;
-    found.state.push_back(
+    state.push_back(
         {file.text(place + "/name"), file.type(place + "/values"), file.shape(place + "/values"), file.bytes(place + "/values")});
   }
+  found.state = std::make_shared<const std::vector<RawArray>>(std::move(state));
   return found;
 }
 

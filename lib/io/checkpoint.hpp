@@ -4,6 +4,7 @@
 #include <string>
 
 #include "io/index.hpp"
+#include "solvers/simulation.hpp"
 
 namespace jaxmpm {
 
@@ -14,7 +15,7 @@ struct Checkpoint {
   std::string backend;
   std::vector<FrameEntry> frames;
   std::map<std::string, GaugeSeries> gauges;
-  std::vector<RawArray> state;
+  SavedState state;
 };
 
 /// Throws NumericsError when the state is not finite (nothing is written then), IoError when it cannot be written.

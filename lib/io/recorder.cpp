@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "core/runtime.hpp"
 #include "io/files.hpp"
 #include "io/vtk.hpp"
 
@@ -18,7 +19,8 @@ ResultsRecorder::ResultsRecorder(const ResultsDirectory& directory, const deck::
       solver_(solver),
       backend_(backend),
       gauges_(deck, model),
-      progress_(solver.particle_count(), quiet) {
+      progress_(solver.particle_count(), quiet),
+      writer_(backend != "cpu" || thread_count() > 1) {
   for (const Body& body : model.bodies) {
     layout_.push_back({body.name, deck.output.fields.value()});
     fields_ = fields_ | selection(layout_.back().fields);
@@ -43,15 +45,23 @@ void ResultsRecorder::begin() {
 
 void ResultsRecorder::frame(const Moment& now) {
   if (!frames_.empty() && frames_.back().step == now.step) return;  // a rescue comes back to a step that has its frame
-  const std::vector<BodySnapshot> bodies = solver_.snapshot(fields_, true);
-  require_finite(now, layout_, bodies, model_.dim);
-  const std::size_t number = frames_.size();
-  if (writes("hdf5")) write_frame(directory_.frame(number), now, layout_, bodies, model_.dim);
-  if (writes("vtk")) write_vtk_frame(directory_.vtk_frame(number), now, layout_, bodies, model_.dim);
+  writer_.wait();
+  solver_.take_snapshot(fields_, true, snapshot_);
+  require_finite(now, layout_, snapshot_, model_.dim);
   frames_.push_back({now.step, now.time});
-  if (writes("vtk")) write_vtk_series(directory_, frames_);
-  write_index();
-  spdlog::debug("frame {} at {:.9g} s, step {}", number, now.time, now.step);
+  writer_.start([this, now, frames = frames_, gauges = gauges_.series()] {
+    write_frame_files(now, frames);
+    ::jaxmpm::write_index(directory_, deck_, backend_, frames, gauges);
+    spdlog::debug("frame {} at {:.9g} s, step {}", frames.size() - 1, now.time, now.step);
+  });
+}
+
+void ResultsRecorder::write_frame_files(const Moment& now, const std::vector<FrameEntry>& frames) const {
+  const std::size_t number = frames.size() - 1;
+  if (writes("hdf5")) write_frame(directory_.frame(number), now, layout_, snapshot_, model_.dim);
+  if (!writes("vtk")) return;
+  write_vtk_frame(directory_.vtk_frame(number), now, layout_, snapshot_, model_.dim);
+  write_vtk_series(directory_, frames);
 }
 
 void ResultsRecorder::gauges(const Moment& now) { gauges_.measure(now, solver_); }
@@ -63,14 +73,23 @@ void ResultsRecorder::drop_after(std::uint64_t step) {
   while (!frames_.empty() && frames_.back().step > step) frames_.pop_back();
 }
 
-void ResultsRecorder::checkpoint(const Moment& now, const std::vector<RawArray>& state, double seconds) {
+void ResultsRecorder::checkpoint(const Moment& now, SavedState state, double seconds) {
+  writer_.wait();
   drop_after(now.step);  // a rescue goes back to before the failure
-  const std::string next = directory_.next_checkpoint();
-  ::jaxmpm::write_checkpoint(next, {now, seconds, deck_.resolved, backend_, frames_, gauges_.series(), state});
-  // A kill between the renames leaves the new one under its first name; resume looks there too.
-  if (std::filesystem::exists(directory_.checkpoint())) rename_file(directory_.checkpoint(), directory_.previous_checkpoint());
-  rename_file(next, directory_.checkpoint());
-  spdlog::debug("checkpoint at {:.9g} s, step {}", now.time, now.step);
+  writer_.start([this, now, seconds, state = std::move(state), frames = frames_, gauges = gauges_.series()] {
+    const std::string next = directory_.next_checkpoint();
+    write_checkpoint(next, {now, seconds, deck_.resolved, backend_, frames, gauges, state});
+    // A kill between the renames leaves the new one under its first name; resume looks there too.
+    if (std::filesystem::exists(directory_.checkpoint())) rename_file(directory_.checkpoint(), directory_.previous_checkpoint());
+    rename_file(next, directory_.checkpoint());
+    spdlog::debug("checkpoint at {:.9g} s, step {}", now.time, now.step);
+  });
+}
+
+void ResultsRecorder::finish() {
+  progress_.finish();
+  writer_.wait();
+  write_index();
 }
 
 void ResultsRecorder::progress(const Moment& now, double end) { progress_.update(now, end); }

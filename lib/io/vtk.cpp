@@ -5,6 +5,7 @@
 #include <vtkDoubleArray.h>
 #include <vtkFieldData.h>
 #include <vtkFloatArray.h>
+#include <vtkIdTypeArray.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkPoints.h>
@@ -12,8 +13,11 @@
 #include <vtkUnsignedIntArray.h>
 #include <vtkXMLPolyDataWriter.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <numeric>
 #include <set>
+#include <type_traits>
 
 #include "io/files.hpp"
 
@@ -28,18 +32,25 @@ std::size_t total(const std::vector<BodySnapshot>& bodies) {
   return count;
 }
 
+void fill_with_numbers(vtkIdTypeArray* array, vtkIdType count) {
+  vtkIdType* first = array->WritePointer(0, count);
+  std::iota(first, first + count, vtkIdType(0));
+}
+
 void add_points(vtkPolyData* data, const std::vector<BodySnapshot>& bodies, int dim) {
-  vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();  // terrain in national grids needs more than seven digits
-  points->SetNumberOfPoints(static_cast<vtkIdType>(total(bodies)));
-  vtkNew<vtkCellArray> vertices;
-  vtkIdType n = 0;
+  const auto count = static_cast<vtkIdType>(total(bodies));
+  vtkNew<vtkDoubleArray> places;  // terrain in national grids needs more than seven digits
+  places->SetNumberOfComponents(3);
+  double* place = places->WritePointer(0, 3 * count);
   for (const BodySnapshot& body : bodies)
-    for (std::size_t p = 0; p < body.id.size(); ++p, ++n) {
-      const double* x = &body.position[p * dim];
-      points->SetPoint(n, x[0], x[1], dim == 3 ? x[2] : 0);
-      vertices->InsertNextCell(1, &n);
-    }
+    for (std::size_t p = 0; p < body.id.size(); ++p)
+      for (int a = 0; a < 3; ++a) *place++ = a < dim ? body.position[p * dim + a] : 0;
+  vtkNew<vtkPoints> points;
+  points->SetData(places);
+  vtkNew<vtkIdTypeArray> ends, members;  // cell n is point n alone
+  fill_with_numbers(ends, count + 1), fill_with_numbers(members, count);
+  vtkNew<vtkCellArray> vertices;
+  vertices->SetData(ends, members);
   data->SetPoints(points);
   data->SetVerts(vertices);
 }
@@ -63,15 +74,15 @@ void add_field(vtkPolyData* data, const OutputField& field, const std::vector<Bo
   vtkNew<Array> array;
   array->SetName(field.name.c_str());
   array->SetNumberOfComponents(static_cast<int>(width));
-  array->SetNumberOfTuples(static_cast<vtkIdType>(total(bodies)));
-  array->Fill(0);
+  auto* value = array->WritePointer(0, static_cast<vtkIdType>(width * total(bodies)));
+  std::fill_n(value, width * total(bodies), 0);
   const std::vector<std::string> names = component_names(field.rank, 3);
   for (std::size_t k = 0; k < names.size(); ++k) array->SetComponentName(static_cast<vtkIdType>(k), names[k].c_str());
-  vtkIdType n = 0;
+  using Value = std::remove_pointer_t<decltype(value)>;
   for (std::size_t b = 0; b < bodies.size(); ++b)
-    for (std::size_t p = 0; p < bodies[b].id.size(); ++p, ++n)
+    for (std::size_t p = 0; p < bodies[b].id.size(); ++p, value += width)
       for (std::size_t k = 0; k < components; ++k)
-        array->SetComponent(n, static_cast<int>(places[k]), field_value(field, bodies[b], b, p, k, components));
+        value[places[k]] = static_cast<Value>(field_value(field, bodies[b], b, p, k, components));
   data->GetPointData()->AddArray(array);
 }
 

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <numeric>
+
+#include "core/parallel_host.hpp"
 
 namespace jaxmpm {
 namespace {
@@ -63,23 +66,27 @@ std::vector<bool> in_largest_cluster(const BodySnapshot& body, const Model& mode
   const CellNumbering numbering(model);
   const std::size_t n = body.id.size();
   std::vector<Key> key(n);
-  for (std::size_t p = 0; p < n; ++p) key[p] = numbering.of(&body.position[p * model.dim]);
-  std::vector<Key> cells = key;
+  parallel_for_host_static("jaxmpm::clusters", n, [&](std::size_t p) { key[p] = numbering.of(&body.position[p * model.dim]); });
+  std::vector<Key> cells;
+  std::unique_copy(key.begin(), key.end(), std::back_inserter(cells));  // neighbours in storage mostly share a cell
   std::sort(cells.begin(), cells.end());
   cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
   const auto place = [&](Key k) { return static_cast<std::size_t>(std::lower_bound(cells.begin(), cells.end(), k) - cells.begin()); };
 
   DisjointSets sets(cells.size());
-  for (std::size_t c = 0; c < cells.size(); ++c)
-    for (const Key offset : numbering.earlier_neighbours())
-      if (const std::size_t other = place(cells[c] + offset); other < cells.size() && cells[other] == cells[c] + offset)
-        sets.join(c, other);
+  for (const Key offset : numbering.earlier_neighbours())
+    for (std::size_t c = 0, other = 0; c < cells.size(); ++c) {  // both ascend
+      while (cells[other] < cells[c] + offset) ++other;          // ends at c at the latest, as the offset is negative
+      if (cells[other] == cells[c] + offset) sets.join(c, other);
+    }
 
+  std::vector<std::size_t> cluster(n);
+  for (std::size_t p = 0; p < n; ++p) cluster[p] = p > 0 && key[p] == key[p - 1] ? cluster[p - 1] : sets.root(place(key[p]));
   std::vector<double> mass(cells.size(), 0.0);
-  for (std::size_t p = 0; p < n; ++p) mass[sets.root(place(key[p]))] += body.mass[p];
+  for (std::size_t p = 0; p < n; ++p) mass[cluster[p]] += body.mass[p];
   const auto largest = static_cast<std::size_t>(std::max_element(mass.begin(), mass.end()) - mass.begin());
   std::vector<bool> belongs(n);
-  for (std::size_t p = 0; p < n; ++p) belongs[p] = sets.root(place(key[p])) == largest;
+  for (std::size_t p = 0; p < n; ++p) belongs[p] = cluster[p] == largest;
   return belongs;
 }
 

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "core/parallel_host.hpp"
 #include "observe/clusters.hpp"
 #include "observe/gauges.hpp"
 
@@ -30,52 +31,45 @@ class Front : public Gauge {
   std::vector<Channel> channels() const override { return {{"value", "m", {}, {}}}; }
   FieldSelection needs() const override { return gauge_.depth ? selection({"density"}) : FieldSelection{}; }
   Sample measure(const Scene& scene, const std::vector<double>*) const override {
-    const Reach reach = reach_of(scene.bodies[body_], false);
+    const Material material = material_of(scene.bodies[body_]);
     const double sign = direction();
     Sample sample = gauge_.depth
-                        ? depth_front(reach.material, *gauge_.depth, width_, model_.cell_size, [&](double s) { return breadth(sign * s); })
-                        : quantile_front(reach.material, quantile(), width_, model_.cell_size);
+                        ? depth_front(material, *gauge_.depth, width_, model_.cell_size, [&](double s) { return breadth(sign * s); })
+                        : quantile_front(material, quantile(), width_, model_.cell_size);
     for (double& value : sample.values) value *= sign;
     return sample;
   }
   void gradient(const Scene& scene, const Sample& reading, const double* by_values, SnapshotGradient& into) const override {
     const BodySnapshot& body = scene.bodies[body_];
-    const Reach reach = reach_of(body, true);
-    const double s = direction() * reading.values[0], by_s = direction() * by_values[0];
+    const Material material = material_of(body);
+    const double sign = direction(), s = sign * reading.values[0], by_s = sign * by_values[0];
     const std::vector<AlongGradient> along =
-        gauge_.depth ? depth_front_gradient(reach.material, s, *gauge_.depth, width_, breadth(reading.values[0]), breadth_slope(s))
-                     : quantile_front_gradient(reach.material, s, quantile(), width_);
+        gauge_.depth ? depth_front_gradient(material, s, *gauge_.depth, width_, breadth(reading.values[0]), breadth_slope(s))
+                     : quantile_front_gradient(material, s, quantile(), width_);
     const std::size_t n = body.id.size();
     double* by_position = gradient_of(&BodySnapshot::position, into[body_], n * model_.dim);
     double* by_mass = gradient_of(&BodySnapshot::mass, into[body_], n);
     double* by_density = gauge_.depth ? gradient_of(&BodySnapshot::density, into[body_], n) : nullptr;
-    for (std::size_t k = 0; k < along.size(); ++k) {
-      const std::size_t p = reach.particle[k];
-      add_coordinate_gradient(&body.position[p * model_.dim], direction() * by_s * along[k].by_s, by_position + p * model_.dim);
-      const double by_amount = by_s * along[k].by_amount;
+    for (std::size_t p = 0; p < n; ++p) {
+      if (material[p].amount == 0) continue;
+      add_coordinate_gradient(&body.position[p * model_.dim], sign * by_s * along[p].by_s, by_position + p * model_.dim);
+      const double by_amount = by_s * along[p].by_amount;
       by_mass[p] += gauge_.depth ? by_amount / body.density[p] : by_amount;
-      if (gauge_.depth) by_density[p] -= by_amount * reach.material[k].amount / body.density[p];
+      if (gauge_.depth) by_density[p] -= by_amount * material[p].amount / body.density[p];
     }
   }
 
  private:
-  /// The body's material along the coordinate, towards the front, and the particles it belongs to, if asked for.
-  struct Reach {
-    std::vector<Along> material;
-    std::vector<std::size_t> particle;
-  };
-  Reach reach_of(const BodySnapshot& body, bool with_particles) const {
+  /// The body's material along the coordinate, towards the front.
+  Material material_of(const BodySnapshot& body) const {
     const std::vector<bool> kept = gauge_.connected ? in_largest_cluster(body, model_) : std::vector<bool>{};
-    Reach reach;
-    reach.material.reserve(body.id.size());
-    reach.particle.reserve(with_particles ? body.id.size() : 0);
-    for (std::size_t p = 0; p < body.id.size(); ++p) {
-      if (gauge_.connected && !kept[p]) continue;
-      reach.material.push_back(
-          {direction() * coordinate(&body.position[p * model_.dim]), gauge_.depth ? body.mass[p] / body.density[p] : body.mass[p]});
-      if (with_particles) reach.particle.push_back(p);
-    }
-    return reach;
+    Material material(body.id.size());
+    const double sign = direction();
+    parallel_for_host_static("jaxmpm::front", material.size(), [&](std::size_t p) {
+      const double amount = gauge_.depth ? body.mass[p] / body.density[p] : body.mass[p];
+      material[p] = {sign * coordinate(&body.position[p * model_.dim]), kept.empty() || kept[p] ? amount : 0};
+    });
+    return material;
   }
   double direction() const { return gauge_.direction == "-" ? -1 : 1; }
   double quantile() const { return gauge_.quantile.value_or(0.995); }

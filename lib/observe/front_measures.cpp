@@ -1,45 +1,75 @@
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
+#include "core/parallel_host.hpp"
 #include "observe/front.hpp"
 #include "observe/spline.hpp"
 
 namespace jaxmpm {
 namespace {
 
-double lowest(const std::vector<Along>& material) {
-  return std::min_element(material.begin(), material.end(), [](const Along& a, const Along& b) { return a.s < b.s; })->s;
-}
-
-double total(const std::vector<Along>& material) {
-  double sum = 0;
-  for (const Along& p : material) sum += p.amount;
-  return sum;
-}
-
-/// Amounts by bins of one size from the lowest coordinate on.
-struct Histogram {
-  double begin, size;
-  std::vector<double> amount;
-  Histogram(const std::vector<Along>& material, double bin) : begin(lowest(material)), size(bin) {
-    for (const Along& p : material) {
-      const auto b = static_cast<std::size_t>((p.s - begin) / size);
-      if (b >= amount.size()) amount.resize(b + 1, 0.0);
-      amount[b] += p.amount;
-    }
-  }
+/// Particles [begin, end): how far they reach, and their amounts by bins of one size, which are numbered from s = 0; `bins` begins at
+/// number `first`.
+struct Piece {
+  std::size_t begin = 0, end = 0;
+  double low = 0, high = 0, total = 0;
+  long first = 0;
+  std::vector<double> bins;
 };
 
-/// Sum over particles near the front: those behind `from` count fully, those beyond `to` not at all.
+Piece survey(const Material& material, double bin_size, std::size_t begin, std::size_t end) {
+  Piece piece{begin, end, material[begin].s, material[begin].s, 0, 0, {}};
+  for (std::size_t p = begin; p < end; ++p) {
+    piece.low = std::min(piece.low, material[p].s), piece.high = std::max(piece.high, material[p].s);
+    piece.total += material[p].amount;
+  }
+  const double per_bin = 1 / bin_size;
+  const auto number = [&](double s) { return static_cast<long>(std::floor(s * per_bin)); };
+  piece.first = number(piece.low);
+  piece.bins.assign(static_cast<std::size_t>(number(piece.high) - piece.first + 1), 0.0);
+  for (std::size_t p = begin; p < end; ++p) piece.bins[static_cast<std::size_t>(number(material[p].s) - piece.first)] += material[p].amount;
+  return piece;
+}
+
+/// The bin in which the sum of amounts from the lowest on reaches `wanted`, or the last one.
+long bin_reaching(double wanted, const std::vector<Piece>& pieces) {
+  long first = pieces[0].first, end = first;
+  for (const Piece& piece : pieces)
+    first = std::min(first, piece.first), end = std::max(end, piece.first + static_cast<long>(piece.bins.size()));
+  std::vector<double> all(static_cast<std::size_t>(end - first), 0.0);
+  for (const Piece& piece : pieces)
+    for (std::size_t b = 0; b < piece.bins.size(); ++b) all[static_cast<std::size_t>(piece.first - first) + b] += piece.bins[b];
+  double sum = 0;
+  std::size_t bin = 0;
+  while (bin + 1 < all.size() && sum + all[bin] < wanted) sum += all[bin++];
+  return first + static_cast<long>(bin);
+}
+
+/// Material near the front; that behind counts fully, that beyond not at all.
 struct Window {
   double behind = 0;
   std::vector<Along> near;
-  Window(const std::vector<Along>& material, double from, double to) {
-    for (const Along& p : material)
-      if (p.s < from) behind += p.amount;
-      else if (p.s <= to) near.push_back(p);
+  void add(const Window& other) {
+    behind += other.behind;
+    near.insert(near.end(), other.near.begin(), other.near.end());
   }
 };
+
+Window window_of(const Material& material, const std::vector<Piece>& pieces, double from, double to) {
+  std::vector<Window> parts(pieces.size());
+  parallel_for_host("jaxmpm::front::window", pieces.size(), [&](std::size_t k) {
+    const Piece& piece = pieces[k];
+    if (piece.high < from) parts[k].behind = piece.total;
+    if (piece.high < from || piece.low > to) return;
+    for (std::size_t p = piece.begin; p < piece.end; ++p)
+      if (material[p].s < from) parts[k].behind += material[p].amount;
+      else if (material[p].s <= to && material[p].amount > 0) parts[k].near.push_back(material[p]);
+  });
+  Window all;
+  for (const Window& part : parts) all.add(part);
+  return all;
+}
 
 double sharp_quantile(Window window, double wanted) {
   std::sort(window.near.begin(), window.near.end(), [](const Along& a, const Along& b) { return a.s < b.s; });
@@ -65,6 +95,34 @@ double smooth_quantile(const Window& window, double wanted, double width, double
   return s;
 }
 
+/// Material in bins of one size, so that what is near a place need not be looked for.
+class Bins {
+ public:
+  Bins(const Material& material, double size) : size_(size), sorted_(material.size()) {
+    const auto below = [](const Along& a, const Along& b) { return a.s < b.s; };
+    const auto [low, high] = std::minmax_element(material.begin(), material.end(), below);
+    begin_ = low->s;
+    first_.assign(static_cast<std::size_t>(number(high->s)) + 2, 0);
+    for (const Along& p : material) ++first_[static_cast<std::size_t>(number(p.s)) + 1];
+    std::partial_sum(first_.begin(), first_.end(), first_.begin());
+    std::vector<std::size_t> next = first_;
+    for (const Along& p : material) sorted_[next[static_cast<std::size_t>(number(p.s))]++] = p;
+  }
+  double begin() const { return begin_; }
+  double end() const { return begin_ + static_cast<double>(first_.size() - 1) * size_; }
+  /// Material of the bin at s and of two on either side.
+  const Along* begin_near(double s) const { return sorted_.data() + first_[place(number(s) - 2)]; }
+  const Along* end_near(double s) const { return sorted_.data() + first_[place(number(s) + 3)]; }
+
+ private:
+  long number(double s) const { return static_cast<long>(std::floor((s - begin_) / size_)); }
+  std::size_t place(long bin) const { return static_cast<std::size_t>(std::clamp(bin, 0L, static_cast<long>(first_.size()) - 1)); }
+
+  double begin_ = 0, size_;
+  std::vector<std::size_t> first_;  // where each bin begins among the sorted
+  Material sorted_;
+};
+
 template <class Behind>
 double bisect(double low, double high, const Behind& behind) {
   for (int halving = 0; halving < 60; ++halving) (behind(0.5 * (low + high)) ? high : low) = 0.5 * (low + high);
@@ -73,53 +131,43 @@ double bisect(double low, double high, const Behind& behind) {
 
 }  // namespace
 
-Sample quantile_front(const std::vector<Along>& material, double quantile, double width, double cell_size) {
+Sample quantile_front(const Material& material, double quantile, double width, double cell_size) {
   if (material.empty()) return {};
-  const Histogram bins(material, std::max(width, cell_size));
-  const double wanted =
-      quantile * total(material) * (1 - 1e-14);  // so that rounding of the sums does not push the last particle out of reach
-  double sum = 0;
-  std::size_t bin = 0;
-  while (bin + 1 < bins.amount.size() && sum + bins.amount[bin] < wanted) sum += bins.amount[bin++];
+  const double bin_size = std::max(width, cell_size);
+  const std::vector<Piece> pieces =
+      in_pieces("jaxmpm::front::survey", material.size(), [&](std::size_t b, std::size_t e) { return survey(material, bin_size, b, e); });
+  double total = 0;
+  for (const Piece& piece : pieces) total += piece.total;
+  const double wanted = quantile * total * (1 - 1e-14);  // so that rounding of the sums does not push the last particle out of reach
+  const auto bin = static_cast<double>(bin_reaching(wanted, pieces));
   // The smooth sum reaches `wanted` within 1.5 widths of that bin, and particles 1.5 widths further on each side still count there. One bin
   // more on either side allows for another order of adding.
-  const double low = bins.begin + (static_cast<double>(bin) - 1) * bins.size - 1.5 * width;
-  const double high = bins.begin + (static_cast<double>(bin) + 2) * bins.size + 1.5 * width;
-  const Window window(material, low - 1.5 * width, high + 1.5 * width);
+  const double low = (bin - 1) * bin_size - 1.5 * width, high = (bin + 2) * bin_size + 1.5 * width;
+  const Window window = window_of(material, pieces, low - 1.5 * width, high + 1.5 * width);
   if (width == 0) return {true, {sharp_quantile(window, wanted)}};
   return {true, {smooth_quantile(window, wanted, width, low, high)}};
 }
 
-Sample depth_front(const std::vector<Along>& material, double depth, double width, double cell_size,
-                   const std::function<double(double)>& breadth) {
+Sample depth_front(const Material& material, double depth, double width, double cell_size, const std::function<double(double)>& breadth) {
   if (material.empty()) return {};
   const double size = width > 0 ? width : cell_size;
-  // Particles by bins of one width, so that a depth needs those of four bins only.
-  const double begin = lowest(material) - 2 * size;
-  std::vector<std::vector<Along>> bins;
-  for (const Along& p : material) {
-    const auto b = static_cast<std::size_t>((p.s - begin) / size);
-    if (b >= bins.size()) bins.resize(b + 1);
-    bins[b].push_back(p);
-  }
+  const Bins bins(material, size);
   const auto deep = [&](double s) {
-    const auto middle = static_cast<long>(std::floor((s - begin) / size));
     double amount = 0;
-    for (long b = std::max(0L, middle - 2); b <= middle + 2 && b < static_cast<long>(bins.size()); ++b)
-      for (const Along& p : bins[static_cast<std::size_t>(b)]) {
-        const double r = (s - p.s) / size;
-        amount += p.amount * (width > 0 ? spline(r) : (r >= -0.5 && r < 0.5 ? 1.0 : 0.0));
-      }
+    for (const Along* p = bins.begin_near(s); p != bins.end_near(s); ++p) {
+      const double r = (s - p->s) / size;
+      amount += p->amount * (width > 0 ? spline(r) : (r >= -0.5 && r < 0.5 ? 1.0 : 0.0));
+    }
     return amount > 0 && amount / size >= depth * breadth(s);
   };
   const double step = size / 4;
-  double outside = begin + (static_cast<double>(bins.size()) + 2) * size;
-  while (outside > begin && !deep(outside - step)) outside -= step;
-  if (outside <= begin) return {};
+  double outside = bins.end() + 2 * size;
+  while (outside > bins.begin() - 2 * size && !deep(outside - step)) outside -= step;
+  if (outside <= bins.begin() - 2 * size) return {};
   return {true, {bisect(outside - step, outside, [&](double s) { return !deep(s); })}};
 }
 
-std::vector<AlongGradient> quantile_front_gradient(const std::vector<Along>& material, double s, double quantile, double width) {
+std::vector<AlongGradient> quantile_front_gradient(const Material& material, double s, double quantile, double width) {
   double slope = 0;  // ∂F/∂s
   for (const Along& p : material) slope += p.amount * spline((s - p.s) / width) / width;
   std::vector<AlongGradient> gradient(material.size());
@@ -131,7 +179,7 @@ std::vector<AlongGradient> quantile_front_gradient(const std::vector<Along>& mat
   return gradient;
 }
 
-std::vector<AlongGradient> depth_front_gradient(const std::vector<Along>& material, double s, double depth, double width, double breadth,
+std::vector<AlongGradient> depth_front_gradient(const Material& material, double s, double depth, double width, double breadth,
                                                 double breadth_slope) {
   constexpr double jump = 1e-6;  // of the depth: more is not the rounding of s
   double measured = 0, slope = -depth * breadth_slope;

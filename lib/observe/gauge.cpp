@@ -63,8 +63,12 @@ void GaugeSet::measure(const Moment& now, const Solver& solver) {
   std::vector<const std::string*> names;
   for (const auto& entry : gauges_) names.push_back(&entry.first);
   std::vector<Sample> samples(names.size());
-  parallel_for_host("jaxmpm::gauges", names.size(),
-                    [&](std::size_t k) { samples[k] = read(*names[k], gauges_.at(*names[k])->region() ? nearby : everywhere); });
+  const auto looks_nearby = [&](std::size_t k) { return gauges_.at(*names[k])->region().has_value(); };
+  for (std::size_t k = 0; k < names.size(); ++k)  // these share out their particles themselves
+    if (!looks_nearby(k)) samples[k] = read(*names[k], everywhere);
+  parallel_for_host("jaxmpm::gauges", names.size(), [&](std::size_t k) {
+    if (looks_nearby(k)) samples[k] = read(*names[k], nearby);
+  });
   for (std::size_t k = 0; k < names.size(); ++k)
     for (const double value : samples[k].values)
       if (!std::isfinite(value))

@@ -93,6 +93,7 @@ class Height : public Gauge {
     gradient_of(&BodySnapshot::mass, into, n)[i] += by_amount * p.amount / body.mass[i];
     gradient_of(&BodySnapshot::density, into, n)[i] -= by_amount * p.amount / body.density[i];
   }
+  /// In order of heights.
   std::vector<ColumnParticle> particles_above(const Scene& scene) const {
     std::vector<ColumnParticle> column;
     for (std::size_t b = 0; b < scene.bodies.size(); ++b)
@@ -104,11 +105,17 @@ class Height : public Gauge {
         if (amount > 0) amount *= body.mass[p] / body.density[p];
         if (amount > 0) column.push_back({up_.sign * body.position[p * dim_ + up_.axis], amount, b, p});
       }
+    std::sort(column.begin(), column.end(), [](const ColumnParticle& a, const ColumnParticle& b) { return a.height < b.height; });
     return column;
   }
+  /// Mirror images reach no farther from ground and top than the material itself.
   double fraction(const std::vector<ColumnParticle>& column, double u) const {
+    const auto below = [](const ColumnParticle& p, double height) { return p.height < height; };
+    const double far = reach * width_;
+    const auto from = u - far < ground_ ? column.begin() : std::lower_bound(column.begin(), column.end(), u - far, below);
+    const auto to = u + far > top_ ? column.end() : std::lower_bound(column.begin(), column.end(), u + far, below);
     double sum = 0;
-    for (const ColumnParticle& p : column) sum += p.amount * mirrored_spline(u, p.height, ground_, top_, width_) / width_;
+    for (auto p = from; p != to; ++p) sum += p->amount * mirrored_spline(u, p->height, ground_, top_, width_) / width_;
     return sum;
   }
   template <class Filled>

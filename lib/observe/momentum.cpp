@@ -1,4 +1,5 @@
 // Total linear momentum, Σ m v.
+#include "core/parallel_host.hpp"
 #include "observe/gauges.hpp"
 
 namespace jaxmpm {
@@ -14,8 +15,9 @@ class Momentum : public Gauge {
   Sample measure(const Scene& scene, const std::vector<double>*) const override {
     Sample sample{true, std::vector<double>(dim_, 0.0)};
     for (const BodySnapshot& body : scene.bodies)
-      for (std::size_t p = 0; p < body.mass.size(); ++p)
-        for (int a = 0; a < dim_; ++a) sample.values[a] += body.mass[p] * body.velocity[p * dim_ + a];
+      for (const Point& part : in_pieces("jaxmpm::momentum", body.mass.size(),
+                                         [&](std::size_t begin, std::size_t end) { return carried_by(body, begin, end); }))
+        for (int a = 0; a < dim_; ++a) sample.values[a] += part[a];
     return sample;
   }
   void gradient(const Scene& scene, const Sample&, const double* by_values, SnapshotGradient& into) const override {
@@ -33,6 +35,13 @@ class Momentum : public Gauge {
   }
 
  private:
+  Point carried_by(const BodySnapshot& body, std::size_t begin, std::size_t end) const {
+    Point sum{};
+    for (std::size_t p = begin; p < end; ++p)
+      for (int a = 0; a < dim_; ++a) sum[a] += body.mass[p] * body.velocity[p * dim_ + a];
+    return sum;
+  }
+
   int dim_;
 };
 

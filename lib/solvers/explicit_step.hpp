@@ -31,9 +31,8 @@ class ExplicitStep : public Solver {
   std::uint64_t particles_at_rest() const override { return rest_.particles(); }
 
  protected:
-  /// Particles may move this far, in cells, before they are sorted again: far enough to be rare, near enough that most still share a
-  /// stencil with their neighbours.
-  static constexpr double sort_after = 0.3;
+  /// Particles may move this far, in cells, before they are sorted again: a tile's arena reaches one cell beyond its block.
+  static constexpr double sort_after = 0.9;
 
   bool sort_is_due() const { return numbers_.drift > sort_after; }
   /// `orders` (may be null) receives per body where each particle was before.

@@ -60,10 +60,13 @@ double stable_step(const Model& model, const MaterialKernels<T, Dim>& materials,
 
 template <class T, int Dim>
 Slots all_slots(const Particles<T, Dim>& p, bool ordered) {
-  Slots slots;
-  slots.reserve(p.count());
-  for (std::size_t a = 0; a < p.count(); ++a)
-    if (p.mass[a] > T(0)) slots.push_back(std::uint32_t(a));
+  Slots slots(p.count());
+  std::size_t there = 0;
+  for (std::size_t a = 0; a < p.count(); ++a) {
+    slots[there] = std::uint32_t(a);
+    there += p.mass[a] > T(0);
+  }
+  slots.resize(there);
   if (!ordered || slots.empty()) return slots;
   constexpr std::uint32_t none = ~std::uint32_t(0);
   const std::uint32_t first = p.first_id();
@@ -94,42 +97,81 @@ std::vector<Slots> slots_within(const Model& model, const Blocks<Dim>& blocks, d
   return slots;
 }
 
+namespace {
+
+/// Fields of the particles in some slots, written from place `begin` of a snapshot on.
+template <class T, int Dim>
+struct SnapshotPart {
+  const Model& model;
+  const Particles<T, Dim>& particles;
+  const std::uint32_t *slot, *end;
+  std::size_t begin;
+
+  template <class From, class To>
+  void copy(const Array<From>& field, std::vector<To>& into, std::size_t width = 1, std::size_t component = 0) const {
+    const From* from = field.data();
+    To* to = into.data() + begin * width + component;
+    for (const std::uint32_t* a = slot; a != end; ++a, to += width) *to = To(from[*a]);
+  }
+  void places(std::vector<double>& position) const {
+    for (std::size_t d = 0; d < Dim; ++d) {
+      copy(particles.position[d], position, Dim, d);
+      const double low = model.domain_min[d], h = model.cell_size, N = model.cells[d];
+      const bool periodic = model.is_periodic(int(d));
+      double* x = position.data() + begin * Dim + d;
+      for (const std::uint32_t* a = slot; a != end; ++a, x += Dim) *x = low + (periodic ? *x - N * std::floor(*x / N) : *x) * h;
+    }
+  }
+  void amounts(double rho0, BodySnapshot& s, bool with_density) const {
+    copy(particles.mass, s.mass);
+    for (std::size_t i = begin; i < begin + std::size_t(end - slot); ++i) {
+      const double density = rho0 * (1 + double(particles.compression[slot[i - begin]]));
+      s.volume[i] = s.mass[i] / density;
+      if (with_density) s.density[i] = density;
+    }
+  }
+  void material_state(const MaterialKernel<T, Dim>& material, const FieldSelection& fields, BodySnapshot& s) const {
+    const auto history = std::size_t(material.history_size());
+    const int plastic = material.plastic_strain_index();
+    double state[16], sigma[6];
+    for (std::size_t i = begin; i < begin + std::size_t(end - slot); ++i) {
+      const std::size_t a = slot[i - begin];
+      const auto e = double(particles.compression[a]);
+      for (std::size_t k = 0; k < history; ++k) state[k] = double(particles.history[k][a]);
+      if (fields.stress || fields.pressure) material.stress(e, state, sigma);
+      if (fields.pressure) s.pressure[i] = -(sigma[0] + sigma[1] + sigma[2]) / 3;
+      if (fields.stress) std::copy(sigma, sigma + 6, s.stress.begin() + std::ptrdiff_t(i) * 6);
+      if (fields.plastic_strain) s.plastic_strain[i] = plastic < 0 ? 0.0 : state[plastic];
+      if (fields.energy) s.strain_energy[i] = material.energy(e, state) * s.volume[i];
+    }
+  }
+};
+
+}  // namespace
+
 template <class T, int Dim>
 void take_body_snapshot(const Model& model, const Body& body, const MaterialKernel<T, Dim>& material, const Particles<T, Dim>& p,
                         const FieldSelection& fields, const Slots& slots, BodySnapshot& s) {
-  const std::size_t n = slots.size(), history = std::size_t(material.history_size());
-  const bool stress = fields.stress || fields.pressure;
+  const std::size_t n = slots.size();
   s.id.resize(n), s.position.resize(n * Dim), s.mass.resize(n);
   s.velocity.resize(fields.velocity ? n * Dim : 0);
   s.density.resize(fields.density ? n : 0), s.volume.resize(n);
   s.pressure.resize(fields.pressure ? n : 0), s.stress.resize(fields.stress ? n * 6 : 0);
-  s.velocity_gradient.resize(fields.velocity_gradient ? n * Dim * Dim : 0);
+  s.velocity_gradient.assign(fields.velocity_gradient ? n * Dim * Dim : 0, 0.0);
   s.plastic_strain.resize(fields.plastic_strain ? n : 0), s.strain_energy.resize(fields.energy ? n : 0);
   const double rho0 = deck::reference_density(body.material);
-  parallel_for_host_static("jaxmpm::snapshot", n, [&](std::size_t i) {
-    const std::size_t a = slots[i];
-    const double e = double(p.compression[a]), mass = double(p.mass[a]), density = rho0 * (1 + e);
-    s.id[i] = p.id[a], s.mass[i] = mass, s.volume[i] = mass / density;
-    for (std::size_t d = 0; d < Dim; ++d) {
-      const double X = p.position[d][a], passed = model.is_periodic(int(d)) ? std::floor(X / model.cells[d]) : 0;
-      s.position[i * Dim + d] = model.domain_min[d] + (X - passed * model.cells[d]) * model.cell_size;
-      if (fields.velocity) s.velocity[i * Dim + d] = double(p.velocity[d][a]);
-    }
-    if (fields.density) s.density[i] = density;
-    if (fields.velocity_gradient)
-      for (std::size_t k = 0; k < Dim * Dim; ++k)
-        s.velocity_gradient[i * Dim * Dim + k] = p.gradient.empty() ? 0.0 : double(p.gradient[k][a]);
-    if (!stress && !fields.energy && !fields.plastic_strain) return;
-    double state[16] = {};
-    for (std::size_t k = 0; k < history; ++k) state[k] = double(p.history[k][a]);
-    if (stress) {
-      double sigma[6];
-      material.stress(e, state, sigma);
-      if (fields.pressure) s.pressure[i] = -(sigma[0] + sigma[1] + sigma[2]) / 3;
-      if (fields.stress) std::copy(sigma, sigma + 6, s.stress.begin() + std::ptrdiff_t(i) * 6);
-    }
-    if (fields.plastic_strain) s.plastic_strain[i] = material.plastic_strain_index() < 0 ? 0.0 : state[material.plastic_strain_index()];
-    if (fields.energy) s.strain_energy[i] = material.energy(e, state) * s.volume[i];
+  const bool of_material = fields.stress || fields.pressure || fields.energy || fields.plastic_strain;
+  constexpr std::size_t size = 1024;  // a part's fields stay in the cache
+  parallel_for_host("jaxmpm::snapshot", (n + size - 1) / size, [&](std::size_t k) {
+    const std::size_t begin = k * size, end = std::min(n, begin + size);
+    const SnapshotPart<T, Dim> part{model, p, slots.data() + begin, slots.data() + end, begin};
+    part.copy(p.id, s.id);
+    part.places(s.position);
+    part.amounts(rho0, s, fields.density);
+    for (std::size_t d = 0; fields.velocity && d < Dim; ++d) part.copy(p.velocity[d], s.velocity, Dim, d);
+    for (std::size_t c = 0; fields.velocity_gradient && c < p.gradient.size(); ++c)
+      part.copy(p.gradient[c], s.velocity_gradient, Dim * Dim, c);
+    if (of_material) part.material_state(material, fields, s);
   });
 }
 

@@ -57,11 +57,13 @@ RunOutcome Simulation::run(const RunStart& start) {
     if (!start.resumed) record();
     loop();
     if (outcome_.finished) record_end();
+    wait();
     outcome_.cpu_seconds += processor_seconds() - cpu_before;
   } catch (const NumericsError& failure) {
     rescue(failure);
   }
   outcome_.at = now_;
+  outcome_.output.beside = recorder_.seconds_beside();
   return outcome_;
 }
 
@@ -117,6 +119,11 @@ void Simulation::record_frame() {
   recorder_.frame(now_);
 }
 
+void Simulation::wait() {
+  const OutputTimed timed(outcome_.output.frames, outcome_.cpu_seconds);
+  recorder_.wait();
+}
+
 bool Simulation::should_stop() const {
   if (settings_.stop_requested && settings_.stop_requested()) return true;
   return settings_.walltime_seconds > 0 && started_.seconds() >= settings_.walltime_seconds;
@@ -136,8 +143,9 @@ void Simulation::write_checkpoint() {
 
 void Simulation::remember() {
   const OutputTimed timed(outcome_.output.checkpoints, outcome_.cpu_seconds);
+  recorder_.wait();  // or there could be three states in memory
   const Stopwatch watch;
-  remembered_ = solver_.save();
+  remembered_ = std::make_shared<const std::vector<RawArray>>(solver_.save());
   remembered_at_ = now_;
   remember_cost_ = watch.seconds();
   last_remembered_.restart();
@@ -149,7 +157,7 @@ void Simulation::remember_if_cheap() {
 }
 
 Moment Simulation::return_to(std::uint64_t step) {
-  solver_.restore(remembered_);
+  solver_.restore(*remembered_);
   now_ = remembered_at_;
   while (now_.step < step) {
     const Moment after = next();
@@ -175,8 +183,9 @@ void Simulation::rescue(const NumericsError& failure) {
 
 std::string Simulation::write_last_good() {
   const auto write = [&] {
-    recorder_.checkpoint(now_, solver_.save(), outcome_.seconds);
+    recorder_.checkpoint(now_, std::make_shared<const std::vector<RawArray>>(solver_.save()), outcome_.seconds);
     recorder_.frame(now_);
+    recorder_.wait();
     return fmt::format("The last good state (step {}, {:.9g} s) is in the last frame and in the checkpoint.", now_.step, now_.time);
   };
   try {

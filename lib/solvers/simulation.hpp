@@ -2,6 +2,7 @@
 // The run loop: steps, and at the right ones frames, gauges and checkpoints; stops on request; rescues the last good state when a step
 // fails.
 #include <functional>
+#include <memory>
 
 #include "core/error.hpp"
 #include "core/stopwatch.hpp"
@@ -10,15 +11,22 @@
 
 namespace jaxmpm {
 
-/// What a run leaves behind. Every call may throw IoError; frame(), gauges() and checkpoint() throw NumericsError instead of writing a
-/// non-finite value.
+/// A solver's state, which several may look at.
+using SavedState = std::shared_ptr<const std::vector<RawArray>>;
+
+/// What a run leaves behind. Every call may throw IoError, also of what an earlier one had left to be written beside the steps; frame(),
+/// gauges() and checkpoint() throw NumericsError instead of writing a non-finite value.
 class Recorder {
  public:
   virtual ~Recorder() = default;
   virtual void frame(const Moment& now) = 0;
   virtual void gauges(const Moment& now) = 0;
   /// `state` is the solver's, `seconds` the wall time spent in steps so far.
-  virtual void checkpoint(const Moment& now, const std::vector<RawArray>& state, double seconds) = 0;
+  virtual void checkpoint(const Moment& now, SavedState state, double seconds) = 0;
+  /// Returns when all of that is on disk.
+  virtual void wait() = 0;
+  /// Wall time that was spent writing beside the steps so far, s.
+  virtual double seconds_beside() const = 0;
   /// After every step; has to be cheap.
   virtual void progress(const Moment& now, double end) = 0;
 };
@@ -37,9 +45,10 @@ struct RunStart {
   double seconds = 0;  // wall time in steps before
 };
 
-/// Wall time that a run spent on what it leaves behind, s.
+/// Wall time of what a run leaves behind, s: for which its steps waited, and that of writing beside them.
 struct OutputSeconds {
   double frames = 0, gauges = 0, checkpoints = 0;
+  double beside = 0;
 };
 
 struct RunOutcome {
@@ -67,6 +76,7 @@ class Simulation {
   void record_end();
   void record_gauges();
   void record_frame();
+  void wait();  // for what is being written
   bool should_stop() const;
   void checkpoint_if_due();
   void write_checkpoint();
@@ -87,7 +97,7 @@ class Simulation {
   RunOutcome outcome_;
   Moment attempted_;           // end of the step that was last begun
   bool checkpointed_ = false;  // the present moment is on disk
-  std::vector<RawArray> remembered_;
+  SavedState remembered_;
   Moment remembered_at_;
   double remember_cost_ = 0;
   Stopwatch started_, last_checkpoint_, last_remembered_;

@@ -121,11 +121,13 @@ def domain(part):
 def runs(part):
     rows = []
     for r in part["rows"]:
-        output, wall = r["seconds_by_output"], r["wall_seconds"]
-        rows.append((r["name"], f"{r['particles']:,}", r["steps"], r["frames"], f"{wall:.1f}", f"{100 * r['seconds_by_phase']['sort'] / wall:.1f} %",
-                     *(f"{100 * output[k] / wall:.1f} %" for k in ("gauges", "frames", "checkpoints")), f"{100 * (r['seconds_by_phase']['sort'] + sum(output.values())) / wall:.1f} %"))
-    return ["**Sorting and output** of typical runs, of the whole call's wall time, all threads:", "",
-            *table(("run", "particles", "steps", "frames", "seconds", "sort", "gauges", "frames", "checkpoints", "together"), rows)]
+        share = {name: seconds / r["wall_seconds"] for name, seconds in {"sort": r["seconds_by_phase"]["sort"], **r["seconds_by_output"]}.items()}
+        share["beside"] /= r["threads"]
+        rows.append((r["name"], f"{r['particles']:,}", r["steps"], r["frames"], f"{r['wall_seconds']:.1f}",
+                     *(f"{100 * share[k]:.1f} %" for k in ("sort", "gauges", "frames", "checkpoints", "beside")), f"{100 * sum(share.values()):.1f} %"))
+    return ["**Sorting and output** of typical runs, of the whole call's wall time, all threads. Frames and checkpoints are what the steps wait for; "
+            "what is written beside the steps takes one of the threads' processors, and counts as that part of them all:", "",
+            *table(("run", "particles", "steps", "frames", "seconds", "sort", "gauges", "frames", "checkpoints", "written beside", "together"), rows)]
 
 
 def automatic_step(part):

@@ -53,7 +53,7 @@ bool run(const std::string& path, int stop_after, bool resume) {
   RunStart start;
   const auto from = resume ? newest_checkpoint(directory) : std::nullopt;
   if (from) {
-    solver.restore(from->state);
+    solver.restore(*from->state);
     recorder.resume(*from);
     start = {from->at, true, from->seconds};
   }
@@ -70,9 +70,9 @@ bool damage_is_harmless(const std::string& path, const Checkpoint& whole) {
   try {
     const Checkpoint read = read_checkpoint(path);
     bool same = read.deck == whole.deck && read.at.step == whole.at.step && read.at.time == whole.at.time &&
-                read.state.size() == whole.state.size();
-    for (std::size_t k = 0; same && k < whole.state.size(); ++k)
-      same = read.state[k].name == whole.state[k].name && read.state[k].bytes == whole.state[k].bytes;
+                read.state->size() == whole.state->size();
+    for (std::size_t k = 0; same && k < whole.state->size(); ++k)
+      same = (*read.state)[k].name == (*whole.state)[k].name && (*read.state)[k].bytes == (*whole.state)[k].bytes;
     return same;
   } catch (const IoError&) {
     return true;
@@ -161,7 +161,8 @@ TEST_CASE("no damaged byte of a checkpoint goes unnoticed", "[resume]") {
 TEST_CASE("a non-finite state never becomes a checkpoint") {
   const Scratch scratch;
   RawArray array{"x", "f4", {1}, {0, 0, 0xc0, 0x7f}};  // a quiet NaN
-  CHECK_THROWS_AS(write_checkpoint(scratch / "c.h5", {{}, 0, "{}", "cpu", {}, {}, {array}}), NumericsError);
+  CHECK_THROWS_AS(write_checkpoint(scratch / "c.h5", {{}, 0, "{}", "cpu", {}, {}, std::make_shared<const std::vector<RawArray>>(1, array)}),
+                  NumericsError);
   CHECK_FALSE(fs::exists(scratch / "c.h5"));
 }
 

@@ -12,13 +12,15 @@ namespace {
 
 struct Log : Recorder {
   std::vector<Moment> frames, readings, checkpoints;
-  std::vector<RawArray> state;
+  SavedState state;
   void frame(const Moment& now) override { frames.push_back(now); }
   void gauges(const Moment& now) override { readings.push_back(now); }
-  void checkpoint(const Moment& now, const std::vector<RawArray>& saved, double) override {
+  void checkpoint(const Moment& now, SavedState saved, double) override {
     checkpoints.push_back(now);
-    state = saved;
+    state = std::move(saved);
   }
+  void wait() override {}
+  double seconds_beside() const override { return 0; }
   void progress(const Moment&, double) override {}
 };
 
@@ -64,7 +66,7 @@ TEST_CASE("the checkpoint of a finished run lies before its last step") {
     Ballistic longer(model), resumed(model);
     Log of_longer, of_resumed;
     Simulation({1.0, std::nullopt, 0.4}, settings(0.2, 0.1), longer, of_longer).run();
-    resumed.restore(log.state);
+    resumed.restore(*log.state);
     Simulation({1.0, std::nullopt, 0.4}, settings(0.2, 0.1), resumed, of_resumed).run({log.checkpoints.back(), true, 0});
     CHECK(same_state(longer, resumed));
     CHECK(of_resumed.frames.size() == 3);  // 0.6, 0.8, 1.0; the others came before
@@ -87,7 +89,7 @@ TEST_CASE("stop at any step and resume: the same steps, states and outputs", "[r
     const RunOutcome outcome = Simulation(time, stopped, first, before).run();
     REQUIRE_FALSE(outcome.finished);
     REQUIRE(before.checkpoints.size() == 1);
-    second.restore(before.state);
+    second.restore(*before.state);
     CHECK(Simulation(time, settings(0.05, 0.02), second, after).run({before.checkpoints[0], true, 0}).finished);
     CHECK(same_state(whole, second));
     CHECK(before.frames.size() + after.frames.size() == of_whole.frames.size());

@@ -49,13 +49,13 @@ TEST_CASE("the smooth quantile follows every particle smoothly") {
 }
 
 TEST_CASE("quantile against sorting, for a random cloud") {
-  std::vector<Along> cloud;
+  Material cloud;
   std::uint64_t random = 1;
   for (int p = 0; p < 5000; ++p) {
     random = random * 6364136223846793005u + 1442695040888963407u;
     cloud.push_back({static_cast<double>(random >> 40) / (1 << 24), 1.0 + static_cast<double>(random >> 60)});
   }
-  std::vector<Along> sorted = cloud;
+  Material sorted = cloud;
   std::sort(sorted.begin(), sorted.end(), [](const Along& a, const Along& b) { return a.s < b.s; });
   double total = 0;
   for (const Along& p : sorted) total += p.amount;
