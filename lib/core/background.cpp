@@ -1,5 +1,7 @@
 #include "core/background.hpp"
 
+#include <utility>
+
 #include "core/runtime.hpp"
 #include "core/stopwatch.hpp"
 
@@ -7,19 +9,25 @@ namespace jaxmpm {
 
 void Background::start(std::function<void()> job) {
   wait();
-  const auto timed_job = [this, job = std::move(job)] {
-    const Timed timed(seconds_);
-    job();
-  };
-  if (!own_thread_) return timed_job();
-  running_ = std::async(std::launch::async, [timed_job] {
+  if (!own_thread_) return job();
+  running_ = std::async(std::launch::async, [this, job = std::move(job)] {
     leave_place();
-    timed_job();
+    const Timed timed(cost_.wall);
+    job();
+    cost_.processor = thread_seconds();
   });
 }
 
 void Background::wait() {
-  if (running_.valid()) running_.get();
+  if (!running_.valid()) return;
+  double waited = 0;
+  {
+    const Timed timed(waited);
+    running_.wait();
+  }
+  const Cost cost = std::exchange(cost_, {});
+  if (waited < cost.wall) seconds_beside_ += cost.processor * (1 - waited / cost.wall);
+  running_.get();
 }
 
 }  // namespace jaxmpm

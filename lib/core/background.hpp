@@ -14,12 +14,17 @@ class Background {
   void start(std::function<void()> job);
   /// Waits for the last job. Throws what it threw, once.
   void wait();
-  /// Time that jobs took which have been waited for, s.
-  double seconds() const { return seconds_; }
+  /// Processor time of the jobs so far, without what they took while they were waited for, s.
+  double seconds_beside() const { return seconds_beside_; }
 
  private:
+  struct Cost {
+    double wall = 0, processor = 0;  // s
+  };
+
   bool own_thread_;
-  double seconds_ = 0;
+  double seconds_beside_ = 0;
+  Cost cost_;                  // of the last job
   std::future<void> running_;  // waits when it goes, so that what a job refers to has to outlive this object
 };
 

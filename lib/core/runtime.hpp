@@ -22,5 +22,7 @@ void leave_place();
 
 /// Processor time of all threads so far, s. Unlike time by the clock it leaves out what other programs had of the processors.
 double processor_seconds();
+/// That of the calling thread.
+double thread_seconds();
 
 }  // namespace jaxmpm

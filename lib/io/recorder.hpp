@@ -28,7 +28,7 @@ class ResultsRecorder : public Recorder {
   void gauges(const Moment& now) override;
   void checkpoint(const Moment& now, SavedState state, double seconds) override;
   void wait() override { writer_.wait(); }
-  double seconds_beside() const override { return writer_.seconds(); }
+  double seconds_beside() const override { return writer_.seconds_beside(); }
   void progress(const Moment& now, double end) override;
 
   std::size_t frame_count() const { return frames_.size(); }

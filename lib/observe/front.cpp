@@ -3,7 +3,6 @@
 
 #include <cmath>
 
-#include "core/parallel_host.hpp"
 #include "observe/clusters.hpp"
 #include "observe/gauges.hpp"
 
@@ -50,27 +49,31 @@ class Front : public Gauge {
     double* by_position = gradient_of(&BodySnapshot::position, into[body_], n * model_.dim);
     double* by_mass = gradient_of(&BodySnapshot::mass, into[body_], n);
     double* by_density = gauge_.depth ? gradient_of(&BodySnapshot::density, into[body_], n) : nullptr;
+    const std::vector<bool> kept = kept_of(body);
     for (std::size_t p = 0; p < n; ++p) {
-      if (material[p].amount == 0) continue;
+      if (!kept.empty() && !kept[p]) continue;
       add_coordinate_gradient(&body.position[p * model_.dim], sign * by_s * along[p].by_s, by_position + p * model_.dim);
       const double by_amount = by_s * along[p].by_amount;
       by_mass[p] += gauge_.depth ? by_amount / body.density[p] : by_amount;
-      if (gauge_.depth) by_density[p] -= by_amount * material[p].amount / body.density[p];
+      if (gauge_.depth) by_density[p] -= by_amount * amount_of(body, p) / body.density[p];
     }
   }
 
  private:
   /// The body's material along the coordinate, towards the front.
   Material material_of(const BodySnapshot& body) const {
-    const std::vector<bool> kept = gauge_.connected ? in_largest_cluster(body, model_) : std::vector<bool>{};
-    Material material(body.id.size());
     const double sign = direction();
-    parallel_for_host_static("jaxmpm::front", material.size(), [&](std::size_t p) {
-      const double amount = gauge_.depth ? body.mass[p] / body.density[p] : body.mass[p];
-      material[p] = {sign * coordinate(&body.position[p * model_.dim]), kept.empty() || kept[p] ? amount : 0};
-    });
-    return material;
+    const auto read = [this, &body, sign, kept = kept_of(body)](std::size_t begin, std::size_t end, Along* out) {
+      for (std::size_t p = begin; p < end; ++p)
+        *out++ = {sign * coordinate(&body.position[p * model_.dim]), kept.empty() || kept[p] ? amount_of(body, p) : 0};
+    };
+    return {body.id.size(), read};
   }
+  /// Which particles count; empty when all do.
+  std::vector<bool> kept_of(const BodySnapshot& body) const {
+    return gauge_.connected ? in_largest_cluster(body, model_) : std::vector<bool>{};
+  }
+  double amount_of(const BodySnapshot& body, std::size_t p) const { return gauge_.depth ? body.mass[p] / body.density[p] : body.mass[p]; }
   double direction() const { return gauge_.direction == "-" ? -1 : 1; }
   double quantile() const { return gauge_.quantile.value_or(0.995); }
 

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "observe/gauge.hpp"
-#include "state/particles.hpp"
 
 namespace jaxmpm {
 
@@ -12,8 +11,11 @@ namespace jaxmpm {
 struct Along {
   double s, amount;
 };
-/// A body's particles; those that do not count have the amount 0.
-using Material = Array<Along>;
+/// A body's particles; those that do not count have the amount 0. `read` writes particles [begin, end).
+struct Material {
+  std::size_t count = 0;
+  std::function<void(std::size_t begin, std::size_t end, Along* out)> read;
+};
 
 /// Derivatives of a front by one particle's coordinate (1) and amount (m per unit of amount).
 struct AlongGradient {

@@ -9,6 +9,13 @@
 namespace jaxmpm {
 namespace {
 
+std::vector<Along> read(const Material& material, std::size_t begin, std::size_t end) {
+  std::vector<Along> particles(end - begin);
+  material.read(begin, end, particles.data());
+  return particles;
+}
+std::vector<Along> read_all(const Material& material) { return read(material, 0, material.count); }
+
 /// Particles [begin, end): how far they reach, and their amounts by bins of one size, which are numbered from s = 0; `bins` begins at
 /// number `first`.
 struct Piece {
@@ -19,16 +26,14 @@ struct Piece {
 };
 
 Piece survey(const Material& material, double bin_size, std::size_t begin, std::size_t end) {
-  Piece piece{begin, end, material[begin].s, material[begin].s, 0, 0, {}};
-  for (std::size_t p = begin; p < end; ++p) {
-    piece.low = std::min(piece.low, material[p].s), piece.high = std::max(piece.high, material[p].s);
-    piece.total += material[p].amount;
-  }
+  const std::vector<Along> particles = read(material, begin, end);
+  Piece piece{begin, end, particles[0].s, particles[0].s, 0, 0, {}};
+  for (const Along& p : particles) piece.low = std::min(piece.low, p.s), piece.high = std::max(piece.high, p.s), piece.total += p.amount;
   const double per_bin = 1 / bin_size;
   const auto number = [&](double s) { return static_cast<long>(std::floor(s * per_bin)); };
   piece.first = number(piece.low);
   piece.bins.assign(static_cast<std::size_t>(number(piece.high) - piece.first + 1), 0.0);
-  for (std::size_t p = begin; p < end; ++p) piece.bins[static_cast<std::size_t>(number(material[p].s) - piece.first)] += material[p].amount;
+  for (const Along& p : particles) piece.bins[static_cast<std::size_t>(number(p.s) - piece.first)] += p.amount;
   return piece;
 }
 
@@ -62,9 +67,9 @@ Window window_of(const Material& material, const std::vector<Piece>& pieces, dou
     const Piece& piece = pieces[k];
     if (piece.high < from) parts[k].behind = piece.total;
     if (piece.high < from || piece.low > to) return;
-    for (std::size_t p = piece.begin; p < piece.end; ++p)
-      if (material[p].s < from) parts[k].behind += material[p].amount;
-      else if (material[p].s <= to && material[p].amount > 0) parts[k].near.push_back(material[p]);
+    for (const Along& p : read(material, piece.begin, piece.end))
+      if (p.s < from) parts[k].behind += p.amount;
+      else if (p.s <= to && p.amount > 0) parts[k].near.push_back(p);
   });
   Window all;
   for (const Window& part : parts) all.add(part);
@@ -98,7 +103,7 @@ double smooth_quantile(const Window& window, double wanted, double width, double
 /// Material in bins of one size, so that what is near a place need not be looked for.
 class Bins {
  public:
-  Bins(const Material& material, double size) : size_(size), sorted_(material.size()) {
+  Bins(const std::vector<Along>& material, double size) : size_(size), sorted_(material.size()) {
     const auto below = [](const Along& a, const Along& b) { return a.s < b.s; };
     const auto [low, high] = std::minmax_element(material.begin(), material.end(), below);
     begin_ = low->s;
@@ -120,7 +125,7 @@ class Bins {
 
   double begin_ = 0, size_;
   std::vector<std::size_t> first_;  // where each bin begins among the sorted
-  Material sorted_;
+  std::vector<Along> sorted_;
 };
 
 template <class Behind>
@@ -132,10 +137,10 @@ double bisect(double low, double high, const Behind& behind) {
 }  // namespace
 
 Sample quantile_front(const Material& material, double quantile, double width, double cell_size) {
-  if (material.empty()) return {};
+  if (material.count == 0) return {};
   const double bin_size = std::max(width, cell_size);
   const std::vector<Piece> pieces =
-      in_pieces("jaxmpm::front::survey", material.size(), [&](std::size_t b, std::size_t e) { return survey(material, bin_size, b, e); });
+      in_pieces("jaxmpm::front::survey", material.count, [&](std::size_t b, std::size_t e) { return survey(material, bin_size, b, e); });
   double total = 0;
   for (const Piece& piece : pieces) total += piece.total;
   const double wanted = quantile * total * (1 - 1e-14);  // so that rounding of the sums does not push the last particle out of reach
@@ -149,9 +154,9 @@ Sample quantile_front(const Material& material, double quantile, double width, d
 }
 
 Sample depth_front(const Material& material, double depth, double width, double cell_size, const std::function<double(double)>& breadth) {
-  if (material.empty()) return {};
+  if (material.count == 0) return {};
   const double size = width > 0 ? width : cell_size;
-  const Bins bins(material, size);
+  const Bins bins(read_all(material), size);
   const auto deep = [&](double s) {
     double amount = 0;
     for (const Along* p = bins.begin_near(s); p != bins.end_near(s); ++p) {
@@ -167,7 +172,8 @@ Sample depth_front(const Material& material, double depth, double width, double 
   return {true, {bisect(outside - step, outside, [&](double s) { return !deep(s); })}};
 }
 
-std::vector<AlongGradient> quantile_front_gradient(const Material& material, double s, double quantile, double width) {
+std::vector<AlongGradient> quantile_front_gradient(const Material& along, double s, double quantile, double width) {
+  const std::vector<Along> material = read_all(along);
   double slope = 0;  // ∂F/∂s
   for (const Along& p : material) slope += p.amount * spline((s - p.s) / width) / width;
   std::vector<AlongGradient> gradient(material.size());
@@ -179,8 +185,9 @@ std::vector<AlongGradient> quantile_front_gradient(const Material& material, dou
   return gradient;
 }
 
-std::vector<AlongGradient> depth_front_gradient(const Material& material, double s, double depth, double width, double breadth,
+std::vector<AlongGradient> depth_front_gradient(const Material& along, double s, double depth, double width, double breadth,
                                                 double breadth_slope) {
+  const std::vector<Along> material = read_all(along);
   constexpr double jump = 1e-6;  // of the depth: more is not the rounding of s
   double measured = 0, slope = -depth * breadth_slope;
   for (const Along& p : material) {

@@ -11,7 +11,7 @@
 namespace jaxmpm {
 
 /// ∂L/∂(snapshot): the numbers of a snapshot ordered by ids are replaced by derivatives of the loss by them, per unit of the field
-/// (position: 1/m, …). Empty fields are zero. `volume`, `pressure`, `strain_energy`, `velocity_gradient` and `id` are not used: express
+/// (position: 1/m, …). Empty fields are zero. `pressure`, `strain_energy`, `velocity_gradient` and `id` are not used: express
 /// them by mass, density and stress.
 using SnapshotGradient = std::vector<BodySnapshot>;
 

@@ -122,15 +122,11 @@ struct SnapshotPart {
       for (const std::uint32_t* a = slot; a != end; ++a, x += Dim) *x = low + (periodic ? *x - N * std::floor(*x / N) : *x) * h;
     }
   }
-  void amounts(double rho0, BodySnapshot& s, bool with_density) const {
-    copy(particles.mass, s.mass);
-    for (std::size_t i = begin; i < begin + std::size_t(end - slot); ++i) {
-      const double density = rho0 * (1 + double(particles.compression[slot[i - begin]]));
-      s.volume[i] = s.mass[i] / density;
-      if (with_density) s.density[i] = density;
-    }
+  void densities(double rho0, std::vector<double>& density) const {
+    copy(particles.compression, density);
+    for (std::size_t i = begin; i < begin + std::size_t(end - slot); ++i) density[i] = rho0 * (1 + density[i]);
   }
-  void material_state(const MaterialKernel<T, Dim>& material, const FieldSelection& fields, BodySnapshot& s) const {
+  void material_state(const MaterialKernel<T, Dim>& material, double rho0, const FieldSelection& fields, BodySnapshot& s) const {
     const auto history = std::size_t(material.history_size());
     const int plastic = material.plastic_strain_index();
     double state[16], sigma[6];
@@ -142,7 +138,7 @@ struct SnapshotPart {
       if (fields.pressure) s.pressure[i] = -(sigma[0] + sigma[1] + sigma[2]) / 3;
       if (fields.stress) std::copy(sigma, sigma + 6, s.stress.begin() + std::ptrdiff_t(i) * 6);
       if (fields.plastic_strain) s.plastic_strain[i] = plastic < 0 ? 0.0 : state[plastic];
-      if (fields.energy) s.strain_energy[i] = material.energy(e, state) * s.volume[i];
+      if (fields.energy) s.strain_energy[i] = material.energy(e, state) * s.mass[i] / (rho0 * (1 + e));
     }
   }
 };
@@ -155,7 +151,7 @@ void take_body_snapshot(const Model& model, const Body& body, const MaterialKern
   const std::size_t n = slots.size();
   s.id.resize(n), s.position.resize(n * Dim), s.mass.resize(n);
   s.velocity.resize(fields.velocity ? n * Dim : 0);
-  s.density.resize(fields.density ? n : 0), s.volume.resize(n);
+  s.density.resize(fields.density ? n : 0);
   s.pressure.resize(fields.pressure ? n : 0), s.stress.resize(fields.stress ? n * 6 : 0);
   s.velocity_gradient.assign(fields.velocity_gradient ? n * Dim * Dim : 0, 0.0);
   s.plastic_strain.resize(fields.plastic_strain ? n : 0), s.strain_energy.resize(fields.energy ? n : 0);
@@ -167,11 +163,12 @@ void take_body_snapshot(const Model& model, const Body& body, const MaterialKern
     const SnapshotPart<T, Dim> part{model, p, slots.data() + begin, slots.data() + end, begin};
     part.copy(p.id, s.id);
     part.places(s.position);
-    part.amounts(rho0, s, fields.density);
+    part.copy(p.mass, s.mass);
+    if (fields.density) part.densities(rho0, s.density);
     for (std::size_t d = 0; fields.velocity && d < Dim; ++d) part.copy(p.velocity[d], s.velocity, Dim, d);
     for (std::size_t c = 0; fields.velocity_gradient && c < p.gradient.size(); ++c)
       part.copy(p.gradient[c], s.velocity_gradient, Dim * Dim, c);
-    if (of_material) part.material_state(material, fields, s);
+    if (of_material) part.material_state(material, rho0, fields, s);
   });
 }
 

@@ -27,7 +27,7 @@ class OutputTimed {
 
 // A state is kept in memory so rarely that it costs at most one part in this of the run, and a rescue repeats no more than that many times
 // its cost.
-constexpr double rescue_share = 100;
+constexpr double rescue_share = 200;
 
 }  // namespace
 

@@ -25,7 +25,7 @@ class Recorder {
   virtual void checkpoint(const Moment& now, SavedState state, double seconds) = 0;
   /// Returns when all of that is on disk.
   virtual void wait() = 0;
-  /// Wall time that was spent writing beside the steps so far, s.
+  /// Processor time of writing beside the steps so far, s.
   virtual double seconds_beside() const = 0;
   /// After every step; has to be cheap.
   virtual void progress(const Moment& now, double end) = 0;
@@ -45,7 +45,7 @@ struct RunStart {
   double seconds = 0;  // wall time in steps before
 };
 
-/// Wall time of what a run leaves behind, s: for which its steps waited, and that of writing beside them.
+/// What a run leaves behind costs, s: wall time for which its steps waited, and processor time of writing beside them.
 struct OutputSeconds {
   double frames = 0, gauges = 0, checkpoints = 0;
   double beside = 0;

@@ -18,7 +18,6 @@ struct BodySnapshot {
   std::vector<double> velocity;           // N × dim, m/s
   std::vector<double> mass;               // N, kg
   std::vector<double> density;            // N, kg/m³
-  std::vector<double> volume;             // N, m³
   std::vector<double> pressure;           // N, Pa, positive in compression: −tr σ / 3
   std::vector<double> stress;             // N × 6, Pa, xx yy zz xy yz xz (tension positive), also in 2D
   std::vector<double> velocity_gradient;  // N × dim × dim, 1/s

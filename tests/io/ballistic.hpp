@@ -70,7 +70,6 @@ class Ballistic : public Solver {
     s.velocity = v_;
     s.mass.assign(n, 1.0);
     s.density.assign(n, 1000.0);
-    s.volume.assign(n, 1e-3);
     s.pressure.assign(n, 5.0);
     s.stress.assign(6 * n, -5.0);
     s.velocity_gradient.assign(4 * n, 0.0);

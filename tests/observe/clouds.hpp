@@ -38,7 +38,6 @@ BodySnapshot fill(const Model& model, int per_axis, const Inside& inside) {
         }
         s.mass.push_back(1000 * volume);
         s.density.push_back(1000);
-        s.volume.push_back(volume);
         s.pressure.push_back(3 * x[0] + 2 * x[1]);
         s.strain_energy.push_back(0.5 * volume);
       }
