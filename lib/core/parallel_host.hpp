@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "core/round_up.hpp"
+
 namespace jaxmpm {
 
 /// Part of a loop: iterations from `begin` until before `end`, of the loop body that `body` points to.
@@ -37,7 +39,7 @@ void parallel_for_host_static(const std::string& label, std::size_t n, const F& 
 template <class F>
 auto in_pieces(const std::string& label, std::size_t n, const F& f) {
   constexpr std::size_t size = 2048;
-  std::vector<decltype(f(std::size_t(0), n))> values((n + size - 1) / size);
+  std::vector<decltype(f(std::size_t(0), n))> values(pieces_of(size, n));
   parallel_for_host(label, values.size(), [&](std::size_t k) { values[k] = f(k * size, std::min(n, (k + 1) * size)); });
   return values;
 }

@@ -3,16 +3,17 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "core/round_up.hpp"
+
 namespace jaxmpm {
 namespace {
 
-constexpr std::size_t line = 64;  // of cache
 constexpr std::size_t chunk_bytes = std::size_t(32) << 20;
 
 }  // namespace
 
 void SnapshotPool::prepare(std::size_t bytes, std::size_t most, std::size_t expected) {
-  bytes = (bytes + line - 1) / line * line;
+  bytes = whole_lines(bytes);
   if (bytes != block_bytes_ || touched_ > most) clear();
   block_bytes_ = bytes, most_ = most, expected_ = expected;
 }

@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "core/pack_rows.hpp"
+#include "core/round_up.hpp"
 #include "core/scalar.hpp"
 
 namespace jaxmpm {
@@ -163,7 +164,7 @@ JAXMPM_INLINE double sum_of(Pack<T, batch<T>> value, int count) {
 template <class T, int Count>
 struct ParticleRows {
   static constexpr int W = batch<T>;
-  static constexpr int stride = (Count + W - 1) / W * W;
+  static constexpr int stride = round_up(Count, W);
   alignas(64) T value[W * stride];
   const T* row(int lane) const { return value + lane * stride; }
   T* row(int lane) { return value + lane * stride; }

@@ -14,7 +14,7 @@ struct GatheredGroups {
   static constexpr int mass = -1;
   static constexpr int theta = !Sch::dilation ? -1 : (Sch::Dim == 3 ? V * change + Sch::dilation_lane : V * ends);
   static constexpr int size = V * ends + int(Sch::Dim == 2 && Sch::dilation);
-  static constexpr int padded = (size + batch<typename Sch::T> - 1) / batch<typename Sch::T> * batch<typename Sch::T>;
+  static constexpr int padded = round_up(size, batch<typename Sch::T>);
   static constexpr int component(int group, int c) { return V * group + Sch::vector_at + c; }
   static constexpr PlaneTerms in_plane(int plane) {
     if (plane > 0) return {change, -1, -1};

@@ -65,8 +65,8 @@ struct Nodes3d {
   /// `grid`: [block][plane][own node][4].
   Nodes3d(const Blocks<3>& blocks, std::size_t block, const T* grid) {
     constexpr int filled = 4 * Sch::Shape::arena_nodes;
-    for (int plane = 0; plane < Sch::planes;
-         ++plane)  // rows read on behind the last node, with weight zero: what lies there must be finite
+    // Rows read on behind the last node, with weight zero: what lies there must be finite.
+    for (int plane = 0; plane < Sch::planes; ++plane)
       std::fill(value + plane * Sch::arena_plane + filled, value + (plane + 1) * Sch::arena_plane, T(0));
     for_each_row_around<Sch>(blocks, block, [&](std::size_t from, int own_node, int arena_node, auto count) {
       for (int plane = 0; plane < Sch::planes; ++plane)
@@ -112,7 +112,7 @@ class Gather3d {
   /// the last.
   template <class Terms, class Stencil>
   JAXMPM_INLINE void gather(const Stencil& t, int count, Pack<T, batch<T>>* sums) {
-    constexpr int per_store = R::lanes / 4, padded = (Terms::size / 4 + per_store - 1) / per_store * per_store;
+    constexpr int per_store = R::lanes / 4, padded = round_up(Terms::size / 4, per_store);
     ParticleRows<T, 4 * padded> gathered;
     for (int l = 0; l < count; ++l) {
       const StencilRows3d<Sch>* rows = nodes_.at(t.base[l]);
@@ -128,7 +128,7 @@ class Gather3d {
     gathered.read(sums);
   }
 
- private:
+ protected:
   NodeRows3d<Sch> nodes_;
 };
 

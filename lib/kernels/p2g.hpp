@@ -25,8 +25,8 @@ struct Coefficients {
   static constexpr int ends = force + Dim;  // groups before θ
   static constexpr int mass = Dim == 3 ? 0 : V * ends, theta = !Sch::dilation ? -1 : (Dim == 3 ? V * ends : V * ends + 1);
   static constexpr int size = Dim == 3 ? V * (ends + int(Sch::dilation)) : V * ends + 1 + int(Sch::dilation);
-  P value[(size + W - 1) / W * W];  // room for the transposition in 3D
-  P m, growth, per_mass;            // growth: 1/(1 + e), per_mass: −Δt V / (m Δx) (times Δx² D⁻¹)
+  P value[round_up(size, W)];  // room for the transposition in 3D
+  P m, growth, per_mass;       // growth: 1/(1 + e), per_mass: −Δt V / (m Δx) (times Δx² D⁻¹)
   using Stress = T[Symmetric<T, Dim>::size][W];
 
   /// FLIP keeps the momentum and the impulse of the forces apart.

@@ -67,7 +67,7 @@ struct StencilRows2d {
 /// Rows of C values of each of W particles, made of packs by value.
 template <class T, int C, int piece>
 struct ParticleLines {
-  static constexpr int W = batch<T>;
+  static constexpr int W = batch<T>, values = C;
   alignas(64) T value[W * C];
 
   JAXMPM_INLINE void write(Pack<T, W>* packs) {
@@ -91,10 +91,9 @@ class Scatter2d {
   static constexpr int S = Sch::S, W = batch<T>;
   using P = Pack<T, W>;
   using Rows = StencilRows2d<Sch, Masses>;
-  using PairRow = NodeRow<T, S, 2>;
-  static constexpr int single_lanes = PairRow::lanes / 2;
-  using Pairs = ParticleLines<T, PairRow::lanes, PairRow::N>;
-  using Singles = ParticleLines<T, single_lanes, PairRow::N / 2>;
+  using Row = typename Rows::Row;
+  using Pairs = ParticleLines<T, Row::lanes, Row::N>;
+  using Singles = ParticleLines<T, Row::lanes / 2, Row::N / 2>;
 
  public:
   explicit Scatter2d(T* arena) : arena_(arena) {
@@ -153,7 +152,7 @@ class Scatter2d {
     template <int rest, int moments, int slopes, class Stencil>
     JAXMPM_INLINE void set(int plane, const Stencil& t, const P* values) {
       const P(&y)[Stencil::kinds][S] = t.factor[1];
-      write(with_w[plane], [&](int b, int c) JAXMPM_INLINE_LAMBDA {
+      write<2>(with_w[plane], [&](int b, int c) JAXMPM_INLINE_LAMBDA {
         P sum(T(0));
         if constexpr (rest >= 0) sum = y[t.w][b] * values[2 * rest + c];
         if constexpr (moments >= 0) sum += y[t.d][b] * values[2 * (moments + 1) + c];
@@ -161,23 +160,21 @@ class Scatter2d {
         return sum;
       });
       if constexpr (moments >= 0)
-        write(with_d[plane], [&](int b, int c) JAXMPM_INLINE_LAMBDA { return y[t.w][b] * values[2 * moments + c]; });
+        write<2>(with_d[plane], [&](int b, int c) JAXMPM_INLINE_LAMBDA { return y[t.w][b] * values[2 * moments + c]; });
       if constexpr (slopes >= 0)
-        write(with_g[plane], [&](int b, int c) JAXMPM_INLINE_LAMBDA { return y[t.w][b] * values[2 * slopes + c]; });
-    }
-    template <class F>
-    static JAXMPM_INLINE void write(Pairs& to, F value) {
-      P node[PairRow::lanes];
-      for (int b = 0; b < S; ++b)
-        for (int c = 0; c < 2; ++c) node[2 * b + c] = value(b, c);
-      for (int k = 2 * S; k < PairRow::lanes; ++k) node[k] = P(T(0));
-      to.write(node);
+        write<2>(with_g[plane], [&](int b, int c) JAXMPM_INLINE_LAMBDA { return y[t.w][b] * values[2 * slopes + c]; });
     }
     template <class Stencil>
     static JAXMPM_INLINE void set_single(Singles& to, const Stencil& t, const P& value) {
-      P node[single_lanes];
-      for (int b = 0; b < S; ++b) node[b] = t.factor[1][t.w][b] * value;
-      for (int k = S; k < single_lanes; ++k) node[k] = P(T(0));
+      write<1>(to, [&](int b, int) JAXMPM_INLINE_LAMBDA { return t.factor[1][t.w][b] * value; });
+    }
+    /// value(b, c): value c of C at node b of the second axis.
+    template <int C, class Row, class F>
+    static JAXMPM_INLINE void write(Row& to, F value) {
+      P node[Row::values];
+      for (int b = 0; b < S; ++b)
+        for (int c = 0; c < C; ++c) node[C * b + c] = value(b, c);
+      for (int k = C * S; k < Row::values; ++k) node[k] = P(T(0));
       to.write(node);
     }
     /// Piece c of the lines of particle l.

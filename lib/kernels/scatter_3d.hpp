@@ -49,7 +49,7 @@ JAXMPM_INLINE void scatter_3d(StencilRows3d<Sch>& rows, const Stencil& t, int l,
 template <class T, class Terms>
 struct Values3d {
   ParticleRows<T, Terms::size> rows;
-  /// The packs are padded to whole ones of them (Terms::padded), and used up.
+  /// There are as many packs as whole batches have lanes: round_up(Terms::size, batch<T>). They are used up.
   JAXMPM_INLINE explicit Values3d(Pack<T, batch<T>>* values) { rows.fill(values); }
 };
 
@@ -69,7 +69,7 @@ class Scatter3d {
   JAXMPM_INLINE void add(const Stencil& t, int count, const Values3d<T, Terms>& values) {
     for (int l = 0; l < count; ++l) {
       if (t.base[l] != current_) {
-        flush();
+        finish();
         clear();
         current_ = t.base[l];
       }
@@ -80,17 +80,16 @@ class Scatter3d {
     }
   }
   /// Once all particles have been added.
-  JAXMPM_INLINE void finish() { flush(); }
+  JAXMPM_INLINE void finish() {
+    for (int plane = 0; current_ >= 0 && plane < Sch::planes; ++plane)
+      rows_[plane].add_to(arena_ + plane * Sch::arena_plane + current_ * 4);
+  }
 
  private:
   T* arena_;
   StencilRows3d<Sch> rows_[Sch::planes];
   int current_ = -1;  // base node of rows_
 
-  JAXMPM_INLINE void flush() {
-    for (int plane = 0; current_ >= 0 && plane < Sch::planes; ++plane)
-      rows_[plane].add_to(arena_ + plane * Sch::arena_plane + current_ * 4);
-  }
   JAXMPM_INLINE void clear() {
     for (auto& r : rows_) r.clear();
   }

@@ -27,7 +27,7 @@ void GridAdjoint<T, Dim>::update(const Blocks<Dim>& blocks, const T* arenas, dou
   const ContactBlocks<T, Dim>& contact = forward_.contact_blocks();
   const std::size_t own_size = kernels_.own_size;
   own_.resize(blocks.count() * own_size), block_.resize(blocks.count()), near_face_.resize(blocks.count());
-  halo_.resize(contact.wall_blocks().size() * halo_nodes);
+  halo_.resize(contact.wall_blocks().size());
   parallel_for_host("jaxmpm::grid_adjoint", blocks.count(), [&](std::size_t b) {
     T* own = own_.data() + b * own_size;
     kernels_.sum(blocks, b, arenas, own);
@@ -136,11 +136,24 @@ void GridAdjoint<T, Dim>::obstacles_adjoint(const Blocks<Dim>& blocks, std::size
   }
 }
 
+/// Place in a halo of the node that lies at `at` from the first of the block that it is around.
 template <class T, int Dim>
-int GridAdjoint<T, Dim>::halo_node(const Node& node, const Node& first) {
-  int at = 0;
-  for (std::size_t d = 0; d < Dim; ++d) at = at * side + node[d] - first[d] + reach;
-  return at;
+int GridAdjoint<T, Dim>::halo_node(const Node& at) {
+  int place = 0;
+  for (std::size_t d = 0; d < Dim; ++d) place = place * side + at[d] + reach;
+  return place;
+}
+
+template <class T, int Dim>
+void GridAdjoint<T, Dim>::Halo::add(const Node& at, T by_mass, const V& by_momentum) {
+  const int place = halo_node(at);
+  std::uint16_t& row = touched[std::size_t(place / side)];
+  const auto bit = std::uint16_t(1u << (place % side));
+  Sum& sum = by[std::size_t(place)];
+  if (!(row & bit)) sum = {};
+  row |= bit;
+  sum.mass += by_mass;
+  for (int c = 0; c < Dim; ++c) sum.momentum[c] += by_momentum[c];
 }
 
 /// Adjoint of update_wall_block: takes the derivatives by the velocities of nodes near faces out of own_ and passes them to the node sums
@@ -150,17 +163,17 @@ void GridAdjoint<T, Dim>::wall_block_adjoint(const Blocks<Dim>& blocks, std::siz
   const Node first = first_node<Dim>(blocks.index[b]);
   const int* neighbours = blocks.neighbour.data() + b * around;
   const WallSums<T, Dim> raw = forward_.wall_sums(blocks, b, constants);
-  Sum* halo = halo_.data() + std::size_t(forward_.contact_blocks().wall_slot()[b]) * halo_nodes;
-  std::fill(halo, halo + halo_nodes, Sum{});
+  Halo& halo = halo_[std::size_t(forward_.contact_blocks().wall_slot()[b])];
+  halo.touched.fill(0);
   const auto no_obstacles = [](const Node&, T, V&) {};
   const auto obstacles = [&](const Node& node, const V& start, V& bar) {
     const Place<Dim> at = locate<Dim>(neighbours, first, node);
     if (at.block >= 0) obstacle_chain(std::size_t(at.block), at.own, start, bar, block_[b]);
   };
   const auto add = [&](const Node& node, T by_mass, const V& by_momentum) {
-    Sum& sum = halo[halo_node(node, first)];
-    sum.mass += by_mass;
-    for (int c = 0; c < Dim; ++c) sum.momentum[c] += by_momentum[c];
+    Node at = node;
+    for (std::size_t d = 0; d < Dim; ++d) at[d] -= first[d];
+    halo.add(at, by_mass, by_momentum);
   };
   const auto add_coefficient = [&](int segment, T by) { block_[b].segment[std::size_t(segment)] += double(by); };
   const auto add_velocity = [&](int face, int c, T by) { block_[b].wall_velocity[std::size_t(face)][std::size_t(c)] += double(by); };
@@ -173,7 +186,8 @@ void GridAdjoint<T, Dim>::wall_block_adjoint(const Blocks<Dim>& blocks, std::siz
     const Node node = node_of<Dim>(first, own);
     if (!forward_.walls().near_face(node) || !(sums[4 * own] > 0)) continue;
     V bar;
-    near_face_[b].push_back({own, take_out(sums, constants.mass_cut_off, own, bars, bar)});
+    const Sum direct = take_out(sums, constants.mass_cut_off, own, bars, bar);
+    if (kernels_.planes == 2) near_face_[b].push_back({own, direct});
     if (standing<T, Dim>(forward_.walls(), node).reached) walls.velocity(node, bar);
   }
 }
@@ -197,25 +211,36 @@ auto GridAdjoint<T, Dim>::take_out(const T* sums, T cut_off, int own, T* bars, V
   return direct;
 }
 
-/// Calls f(own) for the own nodes of a block that the halo of neighbour m covers, ascending.
+/// Calls f(own, derivatives) for the own nodes of a block that the halo of neighbour m touched, ascending.
 template <class T, int Dim>
 template <class F>
-void GridAdjoint<T, Dim>::for_each_own_node_in_reach(int m, F f) {
-  std::array<int, 3> from{0, 0, 0}, to{1, 1, 1};
+void GridAdjoint<T, Dim>::for_each_own_node_in_reach(int m, const Halo& halo, F f) {
+  std::array<int, 3> from{0, 0, 0}, to{1, 1, 1}, offset{};  // own nodes, and where the neighbour has them
   for (std::size_t d = Dim, rest = std::size_t(m); d-- > 0; rest /= 3) {
     const int step = int(rest % 3) - 1;
-    from[d] = step > 0 ? B - reach : 0, to[d] = step < 0 ? reach : B;
+    from[d] = step > 0 ? B - reach : 0, to[d] = step < 0 ? reach : B, offset[d] = -B * step;
   }
+  constexpr std::size_t along = Dim - 1;  // rows
   for (int i = from[0]; i < to[0]; ++i)
-    for (int j = from[1]; j < to[1]; ++j)
-      for (int k = from[2]; k < to[2]; ++k) f(BlockShape<Dim, 2>::own_node(i, j, k));
+    for (int j = Dim == 3 ? from[1] : 0; j < (Dim == 3 ? to[1] : 1); ++j) {
+      const int own = Dim == 3 ? BlockShape<Dim, 2>::own_node(i, j, from[along]) : BlockShape<Dim, 2>::own_node(i, from[along], 0);
+      Node at{};
+      at[0] = i + offset[0];
+      if (Dim == 3) at[1] = j + offset[1];
+      at[along] = from[along] + offset[along];
+      const int place = halo_node(at);
+      const unsigned row = unsigned(halo.touched[std::size_t(place / side)]) >> (place % side);
+      for (unsigned left = row & ((1u << (to[along] - from[along])) - 1); left != 0; left &= left - 1) {
+        const int k = __builtin_ctz(left);
+        f(own + k, halo.by[std::size_t(place + k)]);
+      }
+    }
 }
 
 /// Adds the halos that reach a wall block, in the order of neighbours: P = (p + impulse + m Δt (g + b))/(1 + ζΔt).
 template <class T, int Dim>
 void GridAdjoint<T, Dim>::collect_wall_block(const Blocks<Dim>& blocks, std::size_t b, const GridConstants<T, Dim>& constants,
                                              double time) {
-  const Node first = first_node<Dim>(blocks.index[b]);
   T* bars = own_.data() + b * kernels_.own_size;
   const T* sums = forward_.sums(b);
   std::array<V, cells> by_pull{};
@@ -223,14 +248,8 @@ void GridAdjoint<T, Dim>::collect_wall_block(const Blocks<Dim>& blocks, std::siz
     const int other = blocks.neighbour[b * around + std::size_t(m)];
     const int slot = other < 0 ? -1 : forward_.contact_blocks().wall_slot()[std::size_t(other)];
     if (slot < 0) continue;
-    Node other_first = first;  // as seen from here, also across periodic faces
-    for (std::size_t d = Dim, rest = std::size_t(m); d-- > 0; rest /= 3) other_first[d] += B * (int(rest % 3) - 1);
-    const Sum* halo = halo_.data() + std::size_t(slot) * halo_nodes;
-    for_each_own_node_in_reach(m, [&](int own) {
+    for_each_own_node_in_reach(m, halo_[std::size_t(slot)], [&](int own, const Sum& by) {
       if (!(sums[4 * own] > 0)) return;
-      const Node node = node_of<Dim>(first, own);
-      const Sum& by = halo[halo_node(node, other_first)];
-      if (by.nothing()) return;
       const V pull = forward_.pull(constants, b, own);
       T* by_sums = bars + 4 * own;
       by_sums[0] += by.mass;

@@ -43,11 +43,13 @@ class GridAdjoint {
   struct Sum {
     T mass;
     V momentum;
-    bool nothing() const {
-      bool none = mass == T(0);
-      for (int c = 0; c < Dim; ++c) none = none && momentum[c] == T(0);
-      return none;
-    }
+  };
+  /// Derivatives by the NodeSums of those nodes that something depends on: bit k of touched[row] is set for node k of a row along the last
+  /// axis.
+  struct Halo {
+    std::array<Sum, halo_nodes> by;
+    std::array<std::uint16_t, halo_nodes / side> touched;
+    void add(const Node& at, T by_mass, const V& by_momentum);
   };
 
   std::size_t segments() const { return forward_.contact_blocks().table().coefficient.size(); }
@@ -65,16 +67,16 @@ class GridAdjoint {
   void wall_block_adjoint(const Blocks<Dim>& blocks, std::size_t b, const GridConstants<T, Dim>& constants);
   void collect_wall_block(const Blocks<Dim>& blocks, std::size_t b, const GridConstants<T, Dim>& constants, double time);
   template <class F>
-  static void for_each_own_node_in_reach(int m, F f);
+  static void for_each_own_node_in_reach(int m, const Halo& halo, F f);
   void obstacle_chain(std::size_t block, int own, const V& start, V& bar, GridBars& bars) const;
-  static int halo_node(const Node& node, const Node& first);
+  static int halo_node(const Node& at);
 
   const Model& model_;
   const StepKernels<T, Dim>& kernels_;
   const AdjointKernels<T, Dim>& adjoint_;
   const GridUpdate<T, Dim>& forward_;
   Array<T> own_;
-  std::vector<Sum> halo_;                         // [wall block][node]: derivatives by NodeSums
+  std::vector<Halo> halo_;                        // [wall block]
   std::vector<std::vector<NearFace>> near_face_;  // [block]
   std::vector<GridBars> block_;
   GridBars total_;

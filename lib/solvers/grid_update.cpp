@@ -88,10 +88,11 @@ T* GridUpdate<T, Dim>::place_of_sums(std::size_t b) {
 
 template <class T, int Dim>
 void GridUpdate<T, Dim>::update(const Blocks<Dim>& blocks, const T* arenas, double dt, double time) {
-  if (keep_sums_) sums_.resize(blocks.count() * kernels_.own_size);
+  if (keep_sums_) sums_.resize(blocks.count() * kernels_.own_size), packed_.begin(blocks.count());
   const auto sums_of = [&](std::size_t b) {
     T* to = place_of_sums(b);
     kernels_.sum(blocks, b, arenas, to);
+    if (keep_sums_) packed_.look_at(b, to);
     return to;
   };
   update_from(blocks, sums_of, dt, time);

@@ -44,10 +44,9 @@ class GridUpdate {
     const int slot = contact_blocks_.wall_slot()[b];
     return slot >= 0 ? raw_.data() + std::size_t(slot) * kernels_.own_size : sums_.data() + b * kernels_.own_size;
   }
-  /// The sums of all blocks without what is zero, and the bytes that those of so many blocks take at most.
+  /// The kept sums of all blocks without what is zero, and the bytes that those of so many blocks take at most.
   void pack_sums(std::byte* to) {
-    packed_.pack(
-        contact_.size(), [&](std::size_t b) { return sums(b); }, to);
+    packed_.pack([&](std::size_t b) { return sums(b); }, to);
   }
   std::size_t packed_bytes(std::size_t blocks) const { return packed_.most_bytes(blocks); }
   /// Those of a block at walls and its neighbours, with Δt g.

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "core/parallel_host.hpp"
+#include "core/round_up.hpp"
 #include "solvers/particle_gradient.hpp"
 
 namespace jaxmpm {
@@ -210,8 +211,7 @@ std::size_t ReversibleStep<T, Dim>::particle_bytes(bool lean) const {
     p.for_each_material_field(add);
     if (!lean) p.for_each_motion_field(add);
   }
-  constexpr std::size_t line = 64;  // of cache, where the sums begin
-  return (bytes + line - 1) / line * line;
+  return whole_lines(bytes);  // where the sums begin
 }
 
 template <class T, int Dim>

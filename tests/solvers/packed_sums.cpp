@@ -22,7 +22,9 @@ void check(int planes) {
   PackedSums<T> packed(planes);
   const auto of = [&](std::size_t b) { return sums.data() + b * size; };
   std::vector<std::byte> memory(packed.most_bytes(blocks) + 64, std::byte(0xFF));
-  packed.pack(blocks, of, memory.data());
+  packed.begin(blocks);
+  for (std::size_t b = 0; b < blocks; ++b) packed.look_at(b, of(b));
+  packed.pack(of, memory.data());
   for (std::size_t i = packed.most_bytes(blocks); i < memory.size(); ++i) REQUIRE(memory[i] == std::byte(0xFF));
 
   PackedSums<T> other(planes);

@@ -88,7 +88,7 @@ template <class Sch>
 struct PlaceSums {
   using T = typename Sch::T;
   static constexpr int N = QuadRow<T, Sch::S>::N, per_store = N / 4;
-  static constexpr int padded = (3 + per_store - 1) / per_store * per_store;
+  static constexpr int padded = round_up(3, per_store);
   ParticleRows<T, 4 * padded> rows;
 
   /// Takes the packs of one particle.
@@ -109,20 +109,21 @@ struct PlaceSums {
 
 /// See Contraction2d.
 template <class Sch>
-class Contraction3d {
+class Contraction3d : Gather3d<Sch> {
+  using Base = Gather3d<Sch>;
   using T = typename Sch::T;
   using R = typename StencilRows3d<Sch>::R;
   static constexpr int W = batch<T>;
 
  public:
-  explicit Contraction3d(const Nodes3d<Sch>& nodes) : nodes_(nodes), gather_(nodes) {}
+  explicit Contraction3d(const Nodes3d<Sch>& nodes) : Base(nodes) {}
 
   template <class Stencil, class Bars>
   struct Sums {};
 
   template <class Bars, class Stencil>
   JAXMPM_INLINE void gather(const Stencil& t, int count, Pack<T, W>* gathered, Sums<Stencil, Bars>&) {
-    gather_.template gather<Bars>(t, count, gathered);
+    Base::template gather<Bars>(t, count, gathered);
   }
 
   template <class Terms, class Stencil, class Bars>
@@ -130,7 +131,7 @@ class Contraction3d {
                                   Particles<T, 3>& bar) {
     PlaceSums<Sch> by_place;
     for (int l = 0; l < count; ++l) {
-      const StencilRows3d<Sch>* rows = nodes_.at(t.base[l]);
+      const StencilRows3d<Sch>* rows = this->nodes_.at(t.base[l]);
       R place[PlaceSums<Sch>::padded];
       for (R& x : place) x = R(T(0));
       static_for<Sch::planes>([&](auto plane) JAXMPM_INLINE_LAMBDA {
@@ -146,11 +147,11 @@ class Contraction3d {
   template <class Bars, class Terms, class Stencil>
   JAXMPM_INLINE void contract(const Stencil& t, std::size_t s, int count, const Values3d<T, Terms>& values, Pack<T, W>* gathered,
                               Particles<T, 3>& bar) {
-    constexpr int per_store = R::lanes / 4, groups = Bars::size / 4, padded = (groups + per_store - 1) / per_store * per_store;
+    constexpr int per_store = R::lanes / 4, groups = Bars::size / 4, padded = round_up(groups, per_store);
     ParticleRows<T, 4 * padded> by_value;
     PlaceSums<Sch> by_place;
     for (int l = 0; l < count; ++l) {
-      const StencilRows3d<Sch>* rows = nodes_.at(t.base[l]);
+      const StencilRows3d<Sch>* rows = this->nodes_.at(t.base[l]);
       R sums[padded], place[PlaceSums<Sch>::padded];
       for (int i = groups; i < padded; ++i) sums[i] = R(T(0));
       for (R& x : place) x = R(T(0));
@@ -166,10 +167,6 @@ class Contraction3d {
     by_value.read(gathered);
     by_place.add_to(bar, s, count);
   }
-
- private:
-  NodeRows3d<Sch> nodes_;
-  Gather3d<Sch> gather_;
 };
 
 }  // namespace jaxmpm

@@ -20,7 +20,7 @@ struct GatheredBars {
   static constexpr int ends = Sch::planes == 1 ? groups(0) : groups(0) + groups(1);
   static constexpr int mass = Dim == 3 ? 0 : V * ends;
   static constexpr int theta = !Sch::dilation ? -1 : (Dim == 3 ? V * first(Sch::dilation_plane) + Sch::dilation_lane : V * ends + 1);
-  static constexpr int size = Dim == 3 ? V * ends : V * ends + 1 + int(Sch::dilation), padded = (size + W - 1) / W * W;
+  static constexpr int size = Dim == 3 ? V * ends : V * ends + 1 + int(Sch::dilation), padded = round_up(size, W);
   static constexpr PlaneTerms in_plane(int plane) {
     const int value = first(plane), moments = value + 1, slopes = with_d ? moments + Dim : moments;
     return {value, full(plane) && with_d ? moments : -1, full(plane) && with_g ? slopes : -1};
