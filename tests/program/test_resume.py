@@ -24,7 +24,8 @@ class Resume(ProgramTest):
         return time.monotonic() - begun
 
     def begin(self, deck, out, *more):
-        return self.start("run", deck, "-o", out, "--threads", "1", *more)
+        """With two threads, as frames and checkpoints are then written beside the steps."""
+        return self.start("run", deck, "-o", out, "--threads", "2", *more)
 
     def wait_for(self, path, process):
         end = time.monotonic() + 60

@@ -242,14 +242,15 @@ class ExitCodes(ProgramTest):
 
     def test_full_disk_is_4_and_leaves_nothing_half_written(self):
         deck = self.write(small_deck())
-        for limit in (4, 24):  # blocks of 1 KiB that a file may have
-            command = f'ulimit -f {limit}; exec "$0" "$@"'
-            done = subprocess.run(["bash", "-c", command, PROGRAM, "run", deck, "-o", f"out{limit}", "--threads", "1"], cwd=self.scratch, capture_output=True, text=True, check=False)
-            self.assertEqual(done.returncode, IO, done.stderr)
-            self.assertIn("File too large", done.stderr)
-            self.assertIn(f"out{limit}", done.stderr)
-            self.assertNoHalfFiles(f"out{limit}")
-            self.assertFalse(list((self.scratch / f"out{limit}").rglob("*.tmp")))
+        for threads in ("1", "2"):  # with more than one, frames are written beside the steps
+            for limit in (4, 24):  # blocks of 1 KiB that a file may have
+                out, command = f"out{limit}_{threads}", f'ulimit -f {limit}; exec "$0" "$@"'
+                done = subprocess.run(["bash", "-c", command, PROGRAM, "run", deck, "-o", out, "--threads", threads], cwd=self.scratch, capture_output=True, text=True, check=False)
+                self.assertEqual(done.returncode, IO, done.stderr)
+                self.assertIn("File too large", done.stderr)
+                self.assertIn(out, done.stderr)
+                self.assertNoHalfFiles(out)
+                self.assertFalse(list((self.scratch / out).rglob("*.tmp")))
 
 
 if __name__ == "__main__":
