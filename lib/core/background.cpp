@@ -1,5 +1,6 @@
 #include "core/background.hpp"
 
+#include <system_error>
 #include <utility>
 
 #include "core/runtime.hpp"
@@ -7,15 +8,20 @@
 
 namespace jaxmpm {
 
-void Background::start(std::function<void()> job) {
+void Background::start(const std::function<void()>& job) {
   wait();
   if (!own_thread_) return job();
-  running_ = std::async(std::launch::async, [this, job = std::move(job)] {
+  const auto timed_job = [this, job] {
     leave_place();
     const Timed timed(cost_.wall);
     job();
     cost_.processor = thread_seconds();
-  });
+  };
+  try {
+    running_ = std::async(std::launch::async, timed_job);
+  } catch (const std::system_error&) {  // the system gives no more threads
+    job();
+  }
 }
 
 void Background::wait() {

@@ -10,8 +10,10 @@ namespace jaxmpm {
 class Background {
  public:
   explicit Background(bool own_thread) : own_thread_(own_thread) {}
+  Background(const Background&) = delete;
+  Background& operator=(const Background&) = delete;
   /// Waits for the job before, and starts one. Throws what the job before threw, and then starts nothing.
-  void start(std::function<void()> job);
+  void start(const std::function<void()>& job);
   /// Waits for the last job. Throws what it threw, once.
   void wait();
   /// Processor time of the jobs so far, without what they took while they were waited for, s.

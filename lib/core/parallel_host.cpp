@@ -12,7 +12,7 @@ namespace {
 template <class Schedule>
 void run_parts(const std::string& label, std::size_t n, std::size_t size, LoopPart part, const void* body) {
   if (n == 0) return;
-  const std::size_t parts = pieces_of(size, n);
+  const std::size_t parts = pieces_of(n, size);
   if (parts == 1) return part(body, 0, n);
   using Policy = Kokkos::RangePolicy<Host, Schedule, Kokkos::IndexType<std::size_t>>;
   Policy policy(0, parts);
@@ -29,7 +29,7 @@ void run_dynamic(const std::string& label, std::size_t n, LoopPart part, const v
 
 void run_static(const std::string& label, std::size_t n, LoopPart part, const void* body) {
   const auto threads = std::size_t(thread_count());
-  run_parts<Kokkos::Schedule<Kokkos::Static>>(label, n, pieces_of(threads, n), part, body);
+  run_parts<Kokkos::Schedule<Kokkos::Static>>(label, n, pieces_of(n, threads), part, body);
 }
 
 }  // namespace jaxmpm

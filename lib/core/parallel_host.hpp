@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "core/round_up.hpp"
@@ -38,8 +39,9 @@ void parallel_for_host_static(const std::string& label, std::size_t n, const F& 
 /// with any number of threads.
 template <class F>
 auto in_pieces(const std::string& label, std::size_t n, const F& f) {
+  static_assert(!std::is_same_v<decltype(f(std::size_t(0), n)), bool>, "threads cannot write bits side by side");
   constexpr std::size_t size = 2048;
-  std::vector<decltype(f(std::size_t(0), n))> values(pieces_of(size, n));
+  std::vector<decltype(f(std::size_t(0), n))> values(pieces_of(n, size));
   parallel_for_host(label, values.size(), [&](std::size_t k) { values[k] = f(k * size, std::min(n, (k + 1) * size)); });
   return values;
 }

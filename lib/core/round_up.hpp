@@ -6,13 +6,13 @@ namespace jaxmpm {
 
 /// How many pieces of `size` hold n.
 template <class N>
-constexpr N pieces_of(N size, N n) {
+constexpr N pieces_of(N n, N size) {
   return (n + size - 1) / size;
 }
 /// n, rounded up to whole pieces of `size`.
 template <class N>
 constexpr N round_up(N n, N size) {
-  return pieces_of(size, n) * size;
+  return pieces_of(n, size) * size;
 }
 
 /// Bytes, rounded up to whole lines of the cache.

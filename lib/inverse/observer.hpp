@@ -20,7 +20,7 @@ class Observer {
   virtual ~Observer() = default;
   /// Times, s, increasing, at which it looks; an automatic step is shortened to meet them, a fixed one takes the nearest step.
   virtual const std::vector<double>& times() const = 0;
-  /// Fields that look() needs besides id, position, mass, density and volume.
+  /// Fields that look() needs besides id, position and mass.
   virtual FieldSelection needs() const = 0;
   /// Takes in the state at times()[index], bodies in deck order, particles in order of ids. Called once per time, in order, in every run.
   virtual void look(std::size_t index, const Moment& now, const std::vector<BodySnapshot>& bodies) = 0;

@@ -29,13 +29,6 @@ bool is_finite(const std::vector<unsigned char>& bytes) {
   return true;
 }
 
-void require_finite(const std::vector<RawArray>& state, const Moment& at) {
-  for (const RawArray& array : state)
-    if ((array.type == "f8" && !is_finite<double>(array.bytes)) || (array.type == "f4" && !is_finite<float>(array.bytes)))
-      throw NumericsError("the state at step " + std::to_string(at.step) + " is not finite (" + array.name +
-                          "), so it is not written as a checkpoint.");
-}
-
 void write_frames(hdf5::Writer& file, const std::vector<FrameEntry>& frames) {
   std::vector<std::uint64_t> steps;
   std::vector<double> times;
@@ -80,8 +73,14 @@ GaugeSeries read_gauge(const hdf5::Reader& file, const std::string& group) {
 
 }  // namespace
 
+void require_finite(const Moment& at, const std::vector<RawArray>& state) {
+  for (const RawArray& array : state)
+    if ((array.type == "f8" && !is_finite<double>(array.bytes)) || (array.type == "f4" && !is_finite<float>(array.bytes)))
+      throw NumericsError("the state at step " + std::to_string(at.step) + " is not finite (" + array.name +
+                          "), so it is not written as a checkpoint.");
+}
+
 void write_checkpoint(const std::string& path, const Checkpoint& checkpoint) {
-  require_finite(*checkpoint.state, checkpoint.at);
   hdf5::Writer file(path);
   file.attribute("/", "kind", std::string(kind));
   file.attribute("/", "format", checkpoint_format);

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "io/index.hpp"
-#include "solvers/simulation.hpp"
+#include "solvers/solver.hpp"
 
 namespace jaxmpm {
 
@@ -18,7 +18,9 @@ struct Checkpoint {
   SavedState state;
 };
 
-/// Throws NumericsError when the state is not finite (nothing is written then), IoError when it cannot be written.
+/// Throws NumericsError when a state is not finite: it must not become a checkpoint.
+void require_finite(const Moment& at, const std::vector<RawArray>& state);
+/// Throws IoError when it cannot be written.
 void write_checkpoint(const std::string& path, const Checkpoint& checkpoint);
 /// Throws IoError when the file is missing, damaged or no checkpoint of this format.
 Checkpoint read_checkpoint(const std::string& path);

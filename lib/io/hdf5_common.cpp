@@ -21,10 +21,9 @@ herr_t keep_reason(unsigned, const H5E_error2_t* error, void* into) {
 
 void start() {
   static std::once_flag once;
-  std::call_once(once, [] {
-    H5dont_atexit();
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  });
+  std::call_once(once, [] { H5dont_atexit(); });
+  thread_local const herr_t quiet = H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // each thread has its own stack of errors
+  (void)quiet;
 }
 
 std::string last_reason() {

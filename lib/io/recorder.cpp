@@ -51,6 +51,7 @@ void ResultsRecorder::frame(const Moment& now) {
   frames_.push_back({now.step, now.time});
   writer_.start([this, now, frames = frames_, gauges = gauges_.series()] {
     write_frame_files(now, frames);
+    snapshot_ = {};
     ::jaxmpm::write_index(directory_, deck_, backend_, frames, gauges);
     spdlog::debug("frame {} at {:.9g} s, step {}", frames.size() - 1, now.time, now.step);
   });
@@ -74,15 +75,16 @@ void ResultsRecorder::drop_after(std::uint64_t step) {
 }
 
 void ResultsRecorder::checkpoint(const Moment& now, SavedState state, double seconds) {
+  require_finite(now, *state);
   writer_.wait();
   drop_after(now.step);  // a rescue goes back to before the failure
-  writer_.start([this, now, seconds, state = std::move(state), frames = frames_, gauges = gauges_.series()] {
+  writer_.start([this, whole = Checkpoint{now, seconds, deck_.resolved, backend_, frames_, gauges_.series(), std::move(state)}] {
     const std::string next = directory_.next_checkpoint();
-    write_checkpoint(next, {now, seconds, deck_.resolved, backend_, frames, gauges, state});
+    write_checkpoint(next, whole);
     // A kill between the renames leaves the new one under its first name; resume looks there too.
     if (std::filesystem::exists(directory_.checkpoint())) rename_file(directory_.checkpoint(), directory_.previous_checkpoint());
     rename_file(next, directory_.checkpoint());
-    spdlog::debug("checkpoint at {:.9g} s, step {}", now.time, now.step);
+    spdlog::debug("checkpoint at {:.9g} s, step {}", whole.at.time, whole.at.step);
   });
 }
 

@@ -11,7 +11,7 @@
 
 namespace jaxmpm {
 
-/// Frames and checkpoints are written beside the steps, unless the run was given one thread only. They appear in the order in which the run
+/// Frames and checkpoints are written beside the steps, unless the steps are the host's and have one thread. They appear in the order in which the run
 /// has them, and memory holds one of them at a time.
 class ResultsRecorder : public Recorder {
  public:
@@ -48,7 +48,7 @@ class ResultsRecorder : public Recorder {
   FieldSelection fields_;
   GaugeSet gauges_;
   std::vector<FrameEntry> frames_;
-  std::vector<BodySnapshot> snapshot_;  // of the last frame
+  std::vector<BodySnapshot> snapshot_;  // of the frame that is being written
   Progress progress_;
   Background writer_;  // last, so that its job ends before what it reads goes
 };

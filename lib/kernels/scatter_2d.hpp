@@ -169,12 +169,12 @@ class Scatter2d {
       write<1>(to, [&](int b, int) JAXMPM_INLINE_LAMBDA { return t.factor[1][t.w][b] * value; });
     }
     /// value(b, c): value c of C at node b of the second axis.
-    template <int C, class Row, class F>
-    static JAXMPM_INLINE void write(Row& to, F value) {
-      P node[Row::values];
+    template <int C, class Into, class F>
+    static JAXMPM_INLINE void write(Into& to, F value) {
+      P node[Into::values];
       for (int b = 0; b < S; ++b)
         for (int c = 0; c < C; ++c) node[C * b + c] = value(b, c);
-      for (int k = C * S; k < Row::values; ++k) node[k] = P(T(0));
+      for (int k = C * S; k < Into::values; ++k) node[k] = P(T(0));
       to.write(node);
     }
     /// Piece c of the lines of particle l.

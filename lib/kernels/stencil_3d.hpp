@@ -66,7 +66,7 @@ template <class T, int S>
 struct QuadRow {
   static constexpr int wanted = S == 2 ? 8 : 16;
   static constexpr int N = native_lanes<T> < wanted ? native_lanes<T> : wanted;
-  static constexpr int pieces = pieces_of(N, 4 * S);
+  static constexpr int pieces = pieces_of(4 * S, N);
 };
 
 /// Values of one plane at the nodes of a stencil, kept in registers while consecutive particles share a base node: rows[a·S + b], each of

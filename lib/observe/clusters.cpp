@@ -76,7 +76,7 @@ std::vector<bool> in_largest_cluster(const BodySnapshot& body, const Model& mode
   DisjointSets sets(cells.size());
   for (const Key offset : numbering.earlier_neighbours())
     for (std::size_t c = 0, other = 0; c < cells.size(); ++c) {  // both ascend
-      while (cells[other] < cells[c] + offset) ++other;          // ends at c at the latest, as the offset is negative
+      while (other < c && cells[other] < cells[c] + offset) ++other;
       if (cells[other] == cells[c] + offset) sets.join(c, other);
     }
 

@@ -18,6 +18,7 @@ class Energy : public Gauge {
     const std::vector<std::string> names{"kinetic", "potential", "strain", "plastic", "viscous", "friction", "numerical"};
     return {{"value", dim_ == 2 ? "J/m" : "J", {names.size()}, names}};
   }
+  bool uses_all_threads() const override { return true; }
   FieldSelection needs() const override {
     FieldSelection fields;
     fields.velocity = fields.energy = true;

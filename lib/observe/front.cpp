@@ -28,9 +28,11 @@ class Front : public Gauge {
       for (int a = 0, k = 0; a < model.dim; ++a) center_[a] = a == up_ ? 0 : gauge.center[k++];
   }
   std::vector<Channel> channels() const override { return {{"value", "m", {}, {}}}; }
+  bool uses_all_threads() const override { return true; }
   FieldSelection needs() const override { return gauge_.depth ? selection({"density"}) : FieldSelection{}; }
   Sample measure(const Scene& scene, const std::vector<double>*) const override {
-    const Material material = material_of(scene.bodies[body_]);
+    const std::vector<bool> kept = kept_of(scene.bodies[body_]);
+    const Material material = material_of(scene.bodies[body_], kept);
     const double sign = direction();
     Sample sample = gauge_.depth
                         ? depth_front(material, *gauge_.depth, width_, model_.cell_size, [&](double s) { return breadth(sign * s); })
@@ -40,7 +42,8 @@ class Front : public Gauge {
   }
   void gradient(const Scene& scene, const Sample& reading, const double* by_values, SnapshotGradient& into) const override {
     const BodySnapshot& body = scene.bodies[body_];
-    const Material material = material_of(body);
+    const std::vector<bool> kept = kept_of(body);
+    const Material material = material_of(body, kept);
     const double sign = direction(), s = sign * reading.values[0], by_s = sign * by_values[0];
     const std::vector<AlongGradient> along =
         gauge_.depth ? depth_front_gradient(material, s, *gauge_.depth, width_, breadth(reading.values[0]), breadth_slope(s))
@@ -49,7 +52,6 @@ class Front : public Gauge {
     double* by_position = gradient_of(&BodySnapshot::position, into[body_], n * model_.dim);
     double* by_mass = gradient_of(&BodySnapshot::mass, into[body_], n);
     double* by_density = gauge_.depth ? gradient_of(&BodySnapshot::density, into[body_], n) : nullptr;
-    const std::vector<bool> kept = kept_of(body);
     for (std::size_t p = 0; p < n; ++p) {
       if (!kept.empty() && !kept[p]) continue;
       add_coordinate_gradient(&body.position[p * model_.dim], sign * by_s * along[p].by_s, by_position + p * model_.dim);
@@ -60,10 +62,10 @@ class Front : public Gauge {
   }
 
  private:
-  /// The body's material along the coordinate, towards the front.
-  Material material_of(const BodySnapshot& body) const {
+  /// The body's material along the coordinate, towards the front; refers to both.
+  Material material_of(const BodySnapshot& body, const std::vector<bool>& kept) const {
     const double sign = direction();
-    const auto read = [this, &body, sign, kept = kept_of(body)](std::size_t begin, std::size_t end, Along* out) {
+    const auto read = [this, &body, sign, &kept](std::size_t begin, std::size_t end, Along* out) {
       for (std::size_t p = begin; p < end; ++p)
         *out++ = {sign * coordinate(&body.position[p * model_.dim]), kept.empty() || kept[p] ? amount_of(body, p) : 0};
     };

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "core/parallel_host.hpp"
@@ -17,7 +18,7 @@ std::vector<Along> read(const Material& material, std::size_t begin, std::size_t
 std::vector<Along> read_all(const Material& material) { return read(material, 0, material.count); }
 
 /// Particles [begin, end): how far they reach, and their amounts by bins of one size, which are numbered from s = 0; `bins` begins at
-/// number `first`.
+/// number `first`. No bins where a particle's place is no finite number.
 struct Piece {
   std::size_t begin = 0, end = 0;
   double low = 0, high = 0, total = 0;
@@ -28,7 +29,12 @@ struct Piece {
 Piece survey(const Material& material, double bin_size, std::size_t begin, std::size_t end) {
   const std::vector<Along> particles = read(material, begin, end);
   Piece piece{begin, end, particles[0].s, particles[0].s, 0, 0, {}};
-  for (const Along& p : particles) piece.low = std::min(piece.low, p.s), piece.high = std::max(piece.high, p.s), piece.total += p.amount;
+  bool finite = true;
+  for (const Along& p : particles) {
+    piece.low = std::min(piece.low, p.s), piece.high = std::max(piece.high, p.s);
+    piece.total += p.amount, finite = finite && std::isfinite(p.s);
+  }
+  if (!finite) return piece;
   const double per_bin = 1 / bin_size;
   const auto number = [&](double s) { return static_cast<long>(std::floor(s * per_bin)); };
   piece.first = number(piece.low);
@@ -48,6 +54,7 @@ long bin_reaching(double wanted, const std::vector<Piece>& pieces) {
   double sum = 0;
   std::size_t bin = 0;
   while (bin + 1 < all.size() && sum + all[bin] < wanted) sum += all[bin++];
+  while (bin > 0 && all[bin] == 0) --bin;  // nothing there counts
   return first + static_cast<long>(bin);
 }
 
@@ -142,7 +149,10 @@ Sample quantile_front(const Material& material, double quantile, double width, d
   const std::vector<Piece> pieces =
       in_pieces("jaxmpm::front::survey", material.count, [&](std::size_t b, std::size_t e) { return survey(material, bin_size, b, e); });
   double total = 0;
-  for (const Piece& piece : pieces) total += piece.total;
+  for (const Piece& piece : pieces) {
+    if (piece.bins.empty()) return {true, {std::numeric_limits<double>::quiet_NaN()}};  // the run is told to be unstable
+    total += piece.total;
+  }
   const double wanted = quantile * total * (1 - 1e-14);  // so that rounding of the sums does not push the last particle out of reach
   const auto bin = static_cast<double>(bin_reaching(wanted, pieces));
   // The smooth sum reaches `wanted` within 1.5 widths of that bin, and particles 1.5 widths further on each side still count there. One bin
@@ -172,34 +182,34 @@ Sample depth_front(const Material& material, double depth, double width, double 
   return {true, {bisect(outside - step, outside, [&](double s) { return !deep(s); })}};
 }
 
-std::vector<AlongGradient> quantile_front_gradient(const Material& along, double s, double quantile, double width) {
-  const std::vector<Along> material = read_all(along);
+std::vector<AlongGradient> quantile_front_gradient(const Material& material, double s, double quantile, double width) {
+  const std::vector<Along> particles = read_all(material);
   double slope = 0;  // ∂F/∂s
-  for (const Along& p : material) slope += p.amount * spline((s - p.s) / width) / width;
-  std::vector<AlongGradient> gradient(material.size());
+  for (const Along& p : particles) slope += p.amount * spline((s - p.s) / width) / width;
+  std::vector<AlongGradient> gradient(particles.size());
   if (slope <= 0) return gradient;
-  for (std::size_t p = 0; p < material.size(); ++p) {
-    const double r = (s - material[p].s) / width;
-    gradient[p] = {material[p].amount * spline(r) / width / slope, (quantile - spline_step(r)) / slope};
+  for (std::size_t p = 0; p < particles.size(); ++p) {
+    const double r = (s - particles[p].s) / width;
+    gradient[p] = {particles[p].amount * spline(r) / width / slope, (quantile - spline_step(r)) / slope};
   }
   return gradient;
 }
 
-std::vector<AlongGradient> depth_front_gradient(const Material& along, double s, double depth, double width, double breadth,
+std::vector<AlongGradient> depth_front_gradient(const Material& material, double s, double depth, double width, double breadth,
                                                 double breadth_slope) {
-  const std::vector<Along> material = read_all(along);
+  const std::vector<Along> particles = read_all(material);
   constexpr double jump = 1e-6;  // of the depth: more is not the rounding of s
   double measured = 0, slope = -depth * breadth_slope;
-  for (const Along& p : material) {
+  for (const Along& p : particles) {
     const double r = (s - p.s) / width;
     measured += p.amount * spline(r) / width;
     slope += p.amount * spline_slope(r) / (width * width);
   }
-  std::vector<AlongGradient> gradient(material.size());
+  std::vector<AlongGradient> gradient(particles.size());
   if (slope >= 0 || std::abs(measured - depth * breadth) > jump * depth * breadth) return gradient;
-  for (std::size_t p = 0; p < material.size(); ++p) {
-    const double r = (s - material[p].s) / width;
-    gradient[p] = {material[p].amount * spline_slope(r) / (width * width * slope), -spline(r) / (width * slope)};
+  for (std::size_t p = 0; p < particles.size(); ++p) {
+    const double r = (s - particles[p].s) / width;
+    gradient[p] = {particles[p].amount * spline_slope(r) / (width * width * slope), -spline(r) / (width * slope)};
   }
   return gradient;
 }

@@ -63,12 +63,12 @@ void GaugeSet::measure(const Moment& now, const Solver& solver) {
   std::vector<const std::string*> names;
   for (const auto& entry : gauges_) names.push_back(&entry.first);
   std::vector<Sample> samples(names.size());
-  const auto looks_nearby = [&](std::size_t k) { return gauges_.at(*names[k])->region().has_value(); };
-  for (std::size_t k = 0; k < names.size(); ++k)  // these share out their particles themselves
-    if (!looks_nearby(k)) samples[k] = read(*names[k], everywhere);
-  parallel_for_host("jaxmpm::gauges", names.size(), [&](std::size_t k) {
-    if (looks_nearby(k)) samples[k] = read(*names[k], nearby);
-  });
+  const auto take = [&](std::size_t k) { samples[k] = read(*names[k], gauges_.at(*names[k])->region() ? nearby : everywhere); };
+  std::vector<std::size_t> side_by_side;
+  for (std::size_t k = 0; k < names.size(); ++k)
+    if (gauges_.at(*names[k])->uses_all_threads()) take(k);
+    else side_by_side.push_back(k);
+  parallel_for_host("jaxmpm::gauges", side_by_side.size(), [&](std::size_t k) { take(side_by_side[k]); });
   for (std::size_t k = 0; k < names.size(); ++k)
     for (const double value : samples[k].values)
       if (!std::isfinite(value))

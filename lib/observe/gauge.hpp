@@ -1,6 +1,6 @@
 #pragma once
 // Gauges: small series in time that a deck asks for. One file per kind, one line in the registry (gauges.hpp). Sums run over particles in
-// storage order, which is the same with any number of threads. Where there is no material a sample is masked (valid = 0, value 0), never
+// storage order, or over pieces of it and then in their order, which is the same with any number of threads. Where there is no material a sample is masked (valid = 0, value 0), never
 // NaN.
 #include <map>
 #include <memory>
@@ -45,6 +45,8 @@ class Gauge {
   /// Where the particles that it looks at are, if not anywhere.
   virtual std::optional<Region> region() const { return std::nullopt; }
   virtual bool needs_forces() const { return false; }
+  /// Whether measure() hands its particles to all threads; the others are read side by side.
+  virtual bool uses_all_threads() const { return false; }
   /// `first` is the gauge's own first reading, null while there is none.
   virtual Sample measure(const Scene& scene, const std::vector<double>* first) const = 0;
   /// Adds Σ by_values · ∂values/∂(particles) to `into`, which has the scene's bodies. `reading` is the valid one that measure() gave for

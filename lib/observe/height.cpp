@@ -108,14 +108,17 @@ class Height : public Gauge {
     std::sort(column.begin(), column.end(), [](const ColumnParticle& a, const ColumnParticle& b) { return a.height < b.height; });
     return column;
   }
-  /// Mirror images reach no farther from ground and top than the material itself.
+  /// `column` is in order of heights. What mirror images give at u, the material itself gives at the mirror images of u.
   double fraction(const std::vector<ColumnParticle>& column, double u) const {
+    return sum_around(column, u) + sum_around(column, 2 * ground_ - u) + sum_around(column, 2 * top_ - u);
+  }
+  double sum_around(const std::vector<ColumnParticle>& column, double u) const {
     const auto below = [](const ColumnParticle& p, double height) { return p.height < height; };
-    const double far = reach * width_;
-    const auto from = u - far < ground_ ? column.begin() : std::lower_bound(column.begin(), column.end(), u - far, below);
-    const auto to = u + far > top_ ? column.end() : std::lower_bound(column.begin(), column.end(), u + far, below);
     double sum = 0;
-    for (auto p = from; p != to; ++p) sum += p->amount * mirrored_spline(u, p->height, ground_, top_, width_) / width_;
+    for (auto p = std::lower_bound(column.begin(), column.end(), u - reach * width_, below); p != column.end(); ++p) {
+      if (p->height > u + reach * width_) break;
+      sum += p->amount * spline((u - p->height) / width_) / width_;
+    }
     return sum;
   }
   template <class Filled>

@@ -11,6 +11,7 @@ class Momentum : public Gauge {
   std::vector<Channel> channels() const override {
     return {{"value", dim_ == 2 ? "kg m/s/m" : "kg m/s", value_shape(Rank::vector, dim_), component_names(Rank::vector, dim_)}};
   }
+  bool uses_all_threads() const override { return true; }
   FieldSelection needs() const override { return selection({"velocity"}); }
   Sample measure(const Scene& scene, const std::vector<double>*) const override {
     Sample sample{true, std::vector<double>(dim_, 0.0)};

@@ -159,7 +159,7 @@ void take_body_snapshot(const Model& model, const Body& body, const MaterialKern
   const double rho0 = deck::reference_density(body.material);
   const bool of_material = fields.stress || fields.pressure || fields.energy || fields.plastic_strain;
   constexpr std::size_t size = 1024;  // a part's fields stay in the cache
-  parallel_for_host("jaxmpm::snapshot", pieces_of(size, n), [&](std::size_t k) {
+  parallel_for_host("jaxmpm::snapshot", pieces_of(n, size), [&](std::size_t k) {
     const std::size_t begin = k * size, end = std::min(n, begin + size);
     const SnapshotPart<T, Dim> part{model, p, slots.data() + begin, slots.data() + end, begin};
     part.copy(p.id, s.id);

@@ -58,12 +58,12 @@ RunOutcome Simulation::run(const RunStart& start) {
     loop();
     if (outcome_.finished) record_end();
     wait();
-    outcome_.cpu_seconds += processor_seconds() - cpu_before;
+    outcome_.output.beside = recorder_.seconds_beside();
+    outcome_.cpu_seconds += processor_seconds() - cpu_before - outcome_.output.beside;
   } catch (const NumericsError& failure) {
     rescue(failure);
   }
   outcome_.at = now_;
-  outcome_.output.beside = recorder_.seconds_beside();
   return outcome_;
 }
 
@@ -143,7 +143,7 @@ void Simulation::write_checkpoint() {
 
 void Simulation::remember() {
   const OutputTimed timed(outcome_.output.checkpoints, outcome_.cpu_seconds);
-  recorder_.wait();  // or there could be three states in memory
+  if (remembered_.use_count() > 1) recorder_.wait();  // it is being written: there would be three states in memory
   const Stopwatch watch;
   remembered_ = std::make_shared<const std::vector<RawArray>>(solver_.save());
   remembered_at_ = now_;
@@ -168,17 +168,28 @@ Moment Simulation::return_to(std::uint64_t step) {
 }
 
 void Simulation::rescue(const NumericsError& failure) {
-  std::string where;
+  std::string where = unwritten();
   try {
-    where = write_last_good();
+    where = write_last_good() + where;
   } catch (const std::exception& second) {
-    where = fmt::format("The last good state could not be written ({}); the frames and checkpoints before it are whole.", second.what());
+    where = fmt::format("The last good state could not be written ({}); the frames and checkpoints before it are whole.", second.what()) +
+            where;
   }
   throw NumericsError(
       fmt::format("{}\nin step {}, from {:.9g} s to {:.9g} s (dt {:.4g} s). Take a smaller {}, and look for a load or velocity that the "
                   "material's stiffness cannot carry.\n{}",
                   failure.what(), attempted_.step, attempted_.before, attempted_.time, attempted_.dt,
                   control_.is_automatic() ? "/time/cfl" : "/time/step (or \"auto\")", where));
+}
+
+/// Waits for what is being written, and tells what went wrong with it.
+std::string Simulation::unwritten() {
+  try {
+    recorder_.wait();
+    return {};
+  } catch (const IoError& lost) {
+    return fmt::format("\nBefore that, it {}", lost.what());
+  }
 }
 
 std::string Simulation::write_last_good() {

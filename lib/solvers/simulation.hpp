@@ -11,9 +11,6 @@
 
 namespace jaxmpm {
 
-/// A solver's state, which several may look at.
-using SavedState = std::shared_ptr<const std::vector<RawArray>>;
-
 /// What a run leaves behind. Every call may throw IoError, also of what an earlier one had left to be written beside the steps; frame(),
 /// gauges() and checkpoint() throw NumericsError instead of writing a non-finite value.
 class Recorder {
@@ -76,7 +73,7 @@ class Simulation {
   void record_end();
   void record_gauges();
   void record_frame();
-  void wait();  // for what is being written
+  void wait();  // for what is being written: counts as of frames, of which there are more
   bool should_stop() const;
   void checkpoint_if_due();
   void write_checkpoint();
@@ -84,6 +81,7 @@ class Simulation {
   void remember_if_cheap();
   Moment return_to(std::uint64_t step);  // restores the remembered state and repeats the steps up to `step`
   [[noreturn]] void rescue(const NumericsError& failure);
+  std::string unwritten();
   std::string write_last_good();
   Moment next() const;
 
@@ -96,7 +94,7 @@ class Simulation {
   Moment now_;
   RunOutcome outcome_;
   Moment attempted_;           // end of the step that was last begun
-  bool checkpointed_ = false;  // the present moment is on disk
+  bool checkpointed_ = false;  // the present moment is on disk, or on its way there
   SavedState remembered_;
   Moment remembered_at_;
   double remember_cost_ = 0;

@@ -45,6 +45,8 @@ struct RawArray {
   std::vector<std::size_t> shape;
   std::vector<unsigned char> bytes;
 };
+/// A solver's state, which several may look at.
+using SavedState = std::shared_ptr<const std::vector<RawArray>>;
 
 /// Seconds spent in each phase of the step since the start of the run.
 struct PhaseSeconds {

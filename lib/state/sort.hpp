@@ -183,7 +183,7 @@ void build_blocks(Blocks<Dim>& blocks, const std::vector<std::int64_t>& tile_key
   blocks.index.resize(n), blocks.neighbour.assign(n * around, Blocks<Dim>::none);
   for (std::size_t b = 0; b < n; ++b) blocks.index[b] = block_of_key<Dim>(keys[b], extent);
   constexpr std::size_t share = 1024;  // blocks side by side: threads that wrote by turns would fight over the memory's lines
-  parallel_for_host("jaxmpm::blocks", pieces_of(share, n), [&](std::size_t part) {
+  parallel_for_host("jaxmpm::blocks", pieces_of(n, share), [&](std::size_t part) {
     const std::size_t first = part * share, last = std::min(first + share, n);
     for (std::size_t m = 0; periodic && m < around; ++m)
       for (std::size_t b = first; b < last; ++b) {

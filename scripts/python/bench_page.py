@@ -122,7 +122,7 @@ def runs(part):
     rows = []
     for r in part["rows"]:
         share = {name: seconds / r["wall_seconds"] for name, seconds in {"sort": r["seconds_by_phase"]["sort"], **r["seconds_by_output"]}.items()}
-        share["beside"] /= r["threads"]
+        share["beside"] = share.get("beside", 0) / r["threads"]  # figures from before it was counted lack it
         rows.append((r["name"], f"{r['particles']:,}", r["steps"], r["frames"], f"{r['wall_seconds']:.1f}",
                      *(f"{100 * share[k]:.1f} %" for k in ("sort", "gauges", "frames", "checkpoints", "beside")), f"{100 * sum(share.values()):.1f} %"))
     return ["**Sorting and output** of typical runs, of the whole call's wall time, all threads. Frames and checkpoints are what the steps wait for; "

@@ -160,10 +160,16 @@ TEST_CASE("no damaged byte of a checkpoint goes unnoticed", "[resume]") {
 
 TEST_CASE("a non-finite state never becomes a checkpoint") {
   const Scratch scratch;
-  RawArray array{"x", "f4", {1}, {0, 0, 0xc0, 0x7f}};  // a quiet NaN
-  CHECK_THROWS_AS(write_checkpoint(scratch / "c.h5", {{}, 0, "{}", "cpu", {}, {}, std::make_shared<const std::vector<RawArray>>(1, array)}),
-                  NumericsError);
-  CHECK_FALSE(fs::exists(scratch / "c.h5"));
+  const RawArray array{"x", "f4", {1}, {0, 0, 0xc0, 0x7f}};  // a quiet NaN
+  CHECK_THROWS_AS(require_finite({}, {array}), NumericsError);
+  const deck::Deck deck = ballistic_deck();
+  const Model model = testing::ballistic_model();
+  const ResultsDirectory directory(scratch / "run");
+  Ballistic solver(model);
+  ResultsRecorder recorder(directory, deck, model, solver, "cpu", true);
+  CHECK_THROWS_AS(recorder.checkpoint({}, std::make_shared<const std::vector<RawArray>>(1, array), 0), NumericsError);
+  recorder.wait();
+  CHECK_FALSE(fs::exists(directory.checkpoint()));
 }
 
 TEST_CASE("only the end and output may differ when a run resumes") {

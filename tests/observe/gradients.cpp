@@ -140,6 +140,11 @@ TEST_CASE("derivatives of heights, beside walls too, and of a deposit's") {
       check_everywhere(flat, *make_deposit_gauge({at}, flat, 0, reading));
     check_everywhere(space, *make_gauge(deck::HeightGauge{{at, 0.0}}, space));
   }
+  // Beside an obstacle material lies lower than its top, which is the ground here.
+  Model stepped = flat;
+  const auto above = [](const Point& x) { return SignedDistance{x[1] - 2.3, {0, 1, 0}}; };
+  stepped.obstacles.push_back({"step", deck::ContactKind::slip, 0, above, nullptr});
+  for (const double at : {0.2, 0.43}) check_everywhere(stepped, *make_gauge(deck::HeightGauge{{at}}, stepped));
   // Gravity upwards: the material hangs from the top, and the surface is its lower end.
   Model hanging = flat;
   hanging.gravity = {0, 10, 0};

@@ -70,7 +70,7 @@ struct ScatterTiles {
   /// Particles of a chunk: equal shares of a tile, of whole storage groups.
   static JAXMPM_INLINE std::size_t chunk_size(std::size_t count) {
     constexpr std::size_t most = capacity, group = Record::apart;
-    const std::size_t chunks = pieces_of(most, count), share = pieces_of(chunks, count);
+    const std::size_t chunks = pieces_of(count, most), share = pieces_of(count, chunks);
     return round_up(share, group);
   }
   static JAXMPM_INLINE void add_component(const Lists& lists, const T* records, int base, int component, T* arena) {
