@@ -140,7 +140,8 @@ class Run {
     json.update(cost_summary(model_, *solver_, backend_, outcome.steps, outcome.seconds - start.seconds, solver_->phase_seconds()));
     json["cpu_seconds"] = outcome.cpu_seconds;
     const OutputSeconds& output = outcome.output;
-    json["seconds_by_output"] = {{"frames", output.frames}, {"gauges", output.gauges}, {"checkpoints", output.checkpoints}, {"beside", output.beside}};
+    json["seconds_by_output"] = {
+        {"frames", output.frames}, {"gauges", output.gauges}, {"checkpoints", output.checkpoints}, {"beside", output.beside}};
     write_file(directory_.summary(), json.dump(2) + "\n");
   }
 
