@@ -3,6 +3,7 @@
 #include <initializer_list>
 #include <type_traits>
 
+#include "kernels/adjoint/row_sums.hpp"
 #include "kernels/gather_3d.hpp"
 
 namespace jaxmpm {
@@ -50,35 +51,19 @@ JAXMPM_INLINE void contract_3d(const StencilRows3d<Sch>& rows, const Stencil& t,
         slope[k] = w * C, slope_by_z[k] = g * C;
       }
     });
-    // The nodes are summed over the axes before the last first, with each factor or its derivative: fewer products than to weigh each node.
-    R ww(T(0)), gw(T(0)), wg(T(0));                                  // factors along x and along y
-    R dw(T(0)), wd(T(0)), ddw(T(0)), gd(T(0)), dg(T(0)), wdd(T(0));  // with moments
-    R gg_w(T(0)), g_g(T(0)), w_gg(T(0));                             // with slopes: g', and g along both
-    for (int a = 0; a < S; ++a) {
-      R by_w(T(0)), by_g(T(0)), by_d(T(0)), by_dd(T(0)), by_gg(T(0));
-      for (int b = 0; b < S; ++b) {
-        const R& node = rows.row[a * S + b][c];
-        by_w += R(t.w[1][b][l]) * node, by_g += R(t.g[1][b][l]) * node;
-        if constexpr (moments >= 0) by_d += R(t.d[1][b][l]) * node, by_dd += R(t.dd[1][b][l]) * node;
-        if constexpr (slopes >= 0) by_gg += R(t.gg[1][b][l]) * node;
-      }
-      const R w_x(t.w[0][a][l]), g_x(t.g[0][a][l]);
-      ww += w_x * by_w, gw += g_x * by_w, wg += w_x * by_g;
-      if constexpr (moments >= 0) {
-        const R d_x(t.d[0][a][l]), dd_x(t.dd[0][a][l]);
-        dw += d_x * by_w, wd += w_x * by_d, ddw += dd_x * by_w, gd += g_x * by_d, dg += d_x * by_g, wdd += w_x * by_dd;
-      }
-      if constexpr (slopes >= 0) gg_w += R(t.gg[0][a][l]) * by_w, g_g += g_x * by_g, w_gg += w_x * by_gg;
-    }
-    gather_from(ww, {dw, wd}, {gw, wg});
-    sums[0] += gw * line, sums[1] += wg * line, sums[2] += ww * line_by_z;
+    const auto f = [&] {
+      if constexpr (S == 3) return sum_quadratic_rows<c, (moments >= 0)>(rows, t, l);
+      else return sum_rows<c, (moments >= 0), (slopes >= 0)>(rows, t, l);
+    }();
+    gather_from(f.ww, {f.dw, f.wd}, {f.gw, f.wg});
+    sums[0] += f.gw * line, sums[1] += f.wg * line, sums[2] += f.ww * line_by_z;
     if constexpr (moments >= 0) {
-      sums[0] += ddw * moment[0], sums[1] += dg * moment[0], sums[2] += dw * moment_by_z[0];
-      sums[0] += gd * moment[1], sums[1] += wdd * moment[1], sums[2] += wd * moment_by_z[1];
+      sums[0] += f.ddw * moment[0], sums[1] += f.dg * moment[0], sums[2] += f.dw * moment_by_z[0];
+      sums[0] += f.gd * moment[1], sums[1] += f.wdd * moment[1], sums[2] += f.wd * moment_by_z[1];
     }
     if constexpr (slopes >= 0) {
-      sums[0] += gg_w * slope[0], sums[1] += g_g * slope[0], sums[2] += gw * slope_by_z[0];
-      sums[0] += g_g * slope[1], sums[1] += w_gg * slope[1], sums[2] += wg * slope_by_z[1];
+      sums[0] += f.gg_w * slope[0], sums[1] += f.g_g * slope[0], sums[2] += f.gw * slope_by_z[0];
+      sums[0] += f.g_g * slope[1], sums[1] += f.w_gg * slope[1], sums[2] += f.wg * slope_by_z[1];
     }
   });
 }
