@@ -138,9 +138,9 @@ def automatic_step(part):
 
 
 def gradient(part):
-    rows = [(r["threads"], f"{r['forward_seconds']:.2f}", f"{r['reverse_seconds']:.2f}", f"{r['times_plain_run']:.2f}") for r in part["rows"]]
-    return ["**Gradient** (`inputs/truth_velocity_linear.json`, 10,000 particles, 500 steps, all snapshots kept; the second gradient of two):", "",
-            *table(("threads", "forward, s", "reverse, s", "both over a plain run"), rows)]
+    rows = [(r["name"], f"{r['particles']:,}", r["steps"], r["threads"], f"{r['forward_seconds']:.2f}", f"{r['reverse_seconds']:.2f}", f"{r['times_plain_run']:.2f}") for r in part["rows"]]
+    return ["**Gradients** (decks of inputs/, all snapshots kept; the second gradient of two):", "",
+            *table(("scene", "particles", "steps", "threads", "forward, s", "reverse, s", "together over a plain run"), rows)]
 
 
 def portable(part):

@@ -205,11 +205,15 @@ def gauge_distance(results, other, name, relative=False):
 def gradient(s):
     """Cost of a gradient over that of a plain run of the same steps, one thread and all."""
     rows = []
-    for threads in sorted({1, s.threads[-1]}):
-        results = [s.bench((scenes.INPUTS / "truth_velocity_linear.json", 200 if s.quick else 500, {}), threads, more=["--gradient"])["gradient"] for _ in range(3)]
-        rows.append({"threads": threads, "times_plain_run": statistics.median(r["times_plain_run"] for r in results),
-                     "forward_seconds": min(r["forward_seconds"] for r in results), "reverse_seconds": min(r["reverse_seconds"] for r in results)})
-        progress(f"gradient, {threads} thread(s): {rows[-1]['times_plain_run']:.2f} plain runs")
+    for name, (deck, steps, assignments) in scenes.GRADIENTS.items():
+        for threads in sorted({1, s.threads[-1]}):
+            scene = (scenes.INPUTS / deck, round(steps * (0.4 if s.quick else 1)), assignments)
+            results = [s.bench(scene, threads, more=["--gradient"]) for _ in range(3)]
+            found = [r["gradient"] for r in results]
+            rows.append({"name": name, "particles": results[0]["particles"], "steps": results[0]["steps"], "threads": threads,
+                         "times_plain_run": statistics.median(r["times_plain_run"] for r in found),
+                         **{key: min(r[key] for r in found) for key in ("forward_seconds", "reverse_seconds")}})
+            progress(f"gradient, {name}, {threads} thread(s): {rows[-1]['times_plain_run']:.2f} plain runs")
     return {"rows": rows}
 
 

@@ -61,3 +61,12 @@ RUNS = {
     "granular_column_a2": ("granular_column_a2.json", {"/time/end": 0.2}),
     "dam_break_obstacle": ("dam_break_obstacle.json", {"/time/end": 0.15}),
 }
+
+# What a gradient costs over a plain run: deck, steps, assignments.
+GRADIENTS = {
+    "velocity of a column, 2D": ("truth_velocity_linear.json", 500, {}),
+    "granular column, 2D": ("granular_column_a2.json", 200, {}),
+    "dam break, 3D, single precision": ("dam_break_3d.json", 40, {"/domain/cell_size": 0.01}),
+    "dam break, 3D, double precision": ("dam_break_3d.json", 40, {"/domain/cell_size": 0.01, "/method/precision": "f64"}),
+    "granular column, 3D, double precision": ("granular_column_3d.json", 40, {"/domain/cell_size": 0.01, "/method/precision": "f64"}),
+}
