@@ -8,20 +8,22 @@
 
 namespace jaxmpm {
 
-void Background::start(const std::function<void()>& job) {
+void Background::start(std::function<void()> job) {
   wait();
   if (!own_thread_) return job();
-  const auto timed_job = [this, job] {
-    leave_place();
-    const Timed timed(cost_.wall);
-    job();
-    cost_.processor = thread_seconds();
-  };
+  job_ = std::move(job);
   try {
-    running_ = std::async(std::launch::async, timed_job);
+    running_ = std::async(std::launch::async, [this] { run(); });
   } catch (const std::system_error&) {  // the system gives no more threads
-    job();
+    std::exchange(job_, {})();
   }
+}
+
+void Background::run() {
+  leave_place();
+  const Timed timed(cost_.wall);
+  job_();
+  cost_.processor = thread_seconds();
 }
 
 void Background::wait() {
@@ -31,6 +33,7 @@ void Background::wait() {
     const Timed timed(waited);
     running_.wait();
   }
+  job_ = {};
   const Cost cost = std::exchange(cost_, {});
   if (waited < cost.wall) seconds_beside_ += cost.processor * (1 - waited / cost.wall);
   running_.get();

@@ -13,13 +13,15 @@ class Background {
   Background(const Background&) = delete;
   Background& operator=(const Background&) = delete;
   /// Waits for the job before, and starts one. Throws what the job before threw, and then starts nothing.
-  void start(const std::function<void()>& job);
+  void start(std::function<void()> job);
   /// Waits for the last job. Throws what it threw, once.
   void wait();
   /// Processor time of the jobs so far, without what they took while they were waited for, s.
   double seconds_beside() const { return seconds_beside_; }
 
  private:
+  void run();
+
   struct Cost {
     double wall = 0, processor = 0;  // s
   };
@@ -27,6 +29,7 @@ class Background {
   bool own_thread_;
   double seconds_beside_ = 0;
   Cost cost_;                  // of the last job
+  std::function<void()> job_;  // that runs
   std::future<void> running_;  // waits when it goes, so that what a job refers to has to outlive this object
 };
 

@@ -11,8 +11,8 @@
 
 namespace jaxmpm {
 
-/// Frames and checkpoints are written beside the steps, unless the steps are the host's and have one thread. They appear in the order in which the run
-/// has them, and memory holds one of them at a time.
+/// Frames and checkpoints are written beside the steps, unless the steps are the host's and have one thread. They appear in the order in
+/// which the run has them, and memory holds one of them at a time.
 class ResultsRecorder : public Recorder {
  public:
   ResultsRecorder(const ResultsDirectory& directory, const deck::Deck& deck, const Model& model, Solver& solver, const std::string& backend,
