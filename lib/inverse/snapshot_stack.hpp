@@ -29,6 +29,8 @@ class SnapshotStack {
   /// The same, to be changed.
   std::byte* change_top();
   void pop();
+  /// Whether the one below the newest is on the disk alone, so that pop() and top() will overwrite what the newest lies in.
+  bool fetches_next() const { return size() > 1 && first_in_memory_ >= size() - 1; }
   /// Bytes of memory taken from the system.
   std::size_t memory_bytes() const { return pool_.bytes() + lean_pool_.bytes(); }
   const StateMemory& memory() const { return pool_.memory(); }

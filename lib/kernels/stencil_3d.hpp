@@ -7,42 +7,50 @@
 
 namespace jaxmpm {
 
-/// Base nodes of W particles in their block's arena and the factors of each axis. `Derived`: with the derivatives of the factors by the
-/// particle's place: w' = g, d' = (w (X_i − X_p))' = g (X_i − X_p) − w and g'.
-template <class Sch, bool Moments, bool Slopes, bool Derived>
-struct Stencils3d {
+/// Base nodes of W particles in their block's arena, and how far from there they are on each axis, cells.
+template <class Sch>
+struct StencilPlaces3d {
   using T = typename Sch::T;
-  static constexpr int Dim = Sch::Dim, S = Sch::S, W = batch<T>;
-  using P = Pack<T, W>;
-  static constexpr bool with_g = Slopes || Derived, with_dd = Moments && Derived, with_gg = Slopes && Derived;
-  /// Quads of a row along the last axis: w, then d, then g, d' and g'.
-  static constexpr int w_quad = 0, d_quad = 1, g_quad = Moments ? 2 : 1, dd_quad = g_quad + int(with_g), gg_quad = dd_quad + int(with_dd);
-  static constexpr int quads = gg_quad + int(with_gg);
-
+  static constexpr int Dim = Sch::Dim, W = batch<T>;
   alignas(64) int base[W];
-  alignas(64) T w[Dim - 1][S][W], d[Dim - 1][S][W], g[Dim - 1][S][W];  // axes but the last, to be broadcast
-  alignas(64) T dd[with_dd ? Dim - 1 : 1][S][W], gg[with_gg ? Dim - 1 : 1][S][W];
-  ParticleRows<T, 4 * quads> last;  // the last axis, to be spread
+  Pack<T, W> offset[Dim];
 
-  JAXMPM_INLINE Stencils3d(const Particles<T, Dim>& p, std::size_t s, int count, const Index<Dim>& origin) {
-    constexpr int A = Sch::Shape::A;
+  JAXMPM_INLINE StencilPlaces3d(const Particles<T, Dim>& p, std::size_t s, int count, const Index<Dim>& origin) {
     Pack<int, W> node(0);
     for (int axis = 0; axis < Dim; ++axis) {
       const auto X = load_places<W>(p.position[std::size_t(axis)].data() + s, count);
-      const auto first = make_places<W>([&](std::size_t k) { return floor(X[k] - Bspline<S>::base_shift); });
-      node = node * Pack<int, W>(A) + (from_places<int, W>(first) - Pack<int, W>(origin[std::size_t(axis)]));
-      const P f = from_places<T, W>(make_places<W>([&](std::size_t k) { return X[k] - first[k]; }));
-      P weight[S], slope[S], curvature[S];
+      const auto first = make_places<W>([&](std::size_t k) { return floor(X[k] - Bspline<Sch::S>::base_shift); });
+      node = node * Pack<int, W>(Sch::Shape::A) + (from_places<int, W>(first) - Pack<int, W>(origin[std::size_t(axis)]));
+      offset[axis] = from_places<T, W>(make_places<W>([&](std::size_t k) { return X[k] - first[k]; }));
+    }
+    node.store(base);
+  }
+};
+
+/// With the factors of each axis.
+template <class Sch, bool Moments, bool Slopes>
+struct Stencils3d : StencilPlaces3d<Sch> {
+  using T = typename Sch::T;
+  static constexpr int Dim = Sch::Dim, S = Sch::S, W = batch<T>;
+  using P = Pack<T, W>;
+  /// Quads of a row along the last axis: w, then d, then g.
+  static constexpr int w_quad = 0, d_quad = 1, g_quad = Moments ? 2 : 1, quads = g_quad + int(Slopes);
+
+  alignas(64) T w[Dim - 1][S][W], d[Dim - 1][S][W], g[Dim - 1][S][W];  // axes but the last, to be broadcast
+  ParticleRows<T, 4 * quads> last;                                     // the last axis, to be spread
+
+  JAXMPM_INLINE Stencils3d(const Particles<T, Dim>& p, std::size_t s, int count, const Index<Dim>& origin)
+      : StencilPlaces3d<Sch>(p, s, count, origin) {
+    for (int axis = 0; axis < Dim; ++axis) {
+      const P f = this->offset[axis];
+      P weight[S], slope[S];
       Bspline<S>::weights(f, weight);
-      if constexpr (with_g) Bspline<S>::slopes(f, slope);
-      if constexpr (with_gg) Bspline<S>::curvatures(f, curvature);
+      if constexpr (Slopes) Bspline<S>::slopes(f, slope);
       if (axis < Dim - 1) {
         for (int a = 0; a < S; ++a) {
           weight[a].store(w[axis][a]);
           if constexpr (Moments) (weight[a] * (P(T(a)) - f)).store(d[axis][a]);
-          if constexpr (with_g) slope[a].store(g[axis][a]);
-          if constexpr (with_dd) (slope[a] * (P(T(a)) - f) - weight[a]).store(dd[axis][a]);
-          if constexpr (with_gg) curvature[a].store(gg[axis][a]);
+          if constexpr (Slopes) slope[a].store(g[axis][a]);
         }
       } else {
         P row[decltype(last)::stride];
@@ -50,14 +58,11 @@ struct Stencils3d {
         for (int a = 0; a < S; ++a) {
           row[4 * w_quad + a] = weight[a];
           if constexpr (Moments) row[4 * d_quad + a] = weight[a] * (P(T(a)) - f);
-          if constexpr (with_g) row[4 * g_quad + a] = slope[a];
-          if constexpr (with_dd) row[4 * dd_quad + a] = slope[a] * (P(T(a)) - f) - weight[a];
-          if constexpr (with_gg) row[4 * gg_quad + a] = curvature[a];
+          if constexpr (Slopes) row[4 * g_quad + a] = slope[a];
         }
         last.fill(row);
       }
     }
-    node.store(base);
   }
 };
 

@@ -6,6 +6,7 @@
 #include "core/parallel_host.hpp"
 #include "core/round_up.hpp"
 #include "solvers/particle_gradient.hpp"
+#include "solvers/tile_fields.hpp"
 
 namespace jaxmpm {
 namespace {
@@ -36,6 +37,11 @@ std::vector<Stretch> stretches(std::vector<Particles<T, Dim>>& bodies, Part part
   return all;
 }
 
+template <class T, int Dim>
+void clear_motion(std::vector<Particles<T, Dim>>& bodies) {
+  for (Particles<T, Dim>& p : bodies) p.for_each_motion_field([](auto& field) { std::fill(field.begin(), field.end(), T(0)); });
+}
+
 template <class Copy>
 void copy_stretches(const std::vector<Stretch>& stretches, Copy&& copy) {
   parallel_for_host_static("jaxmpm::keep", stretches.size(),
@@ -47,12 +53,6 @@ template <class T, int Dim>
 void read_fields(std::vector<Particles<T, Dim>>& bodies, Part part, const std::byte* numbers) {
   copy_stretches(stretches(bodies, part),
                  [&](std::byte* field, std::size_t offset, std::size_t size) { std::memcpy(field, numbers + offset, size); });
-}
-
-/// Swaps the fields of the material.
-template <class T, int Dim>
-void swap_material(Particles<T, Dim>& a, Particles<T, Dim>& b) {
-  a.position.swap(b.position), a.compression.swap(b.compression), a.history.swap(b.history), a.dilation.swap(b.dilation);
 }
 
 }  // namespace
@@ -68,11 +68,9 @@ void ReversibleStep<T, Dim>::step_adjoint(double dt, const KeptState& state, con
   if (waiting_ && kept.has_sums && kept.epoch == epoch_ && !(kept.numbers.drift > this->sort_after)) {
     const StepConstants<T> after = this->constants_;
     this->constants_.dt = T(dt);
-    read_fields(before_, Part::material, numbers);
     update_grid_again(kept, numbers, dt);
-    between_steps_adjoint(after);
-    for (std::size_t b = 0; b < before_.size(); ++b) swap_material(this->bodies_[b], before_[b]);
-    if (!kept.lean) read_fields(this->bodies_, Part::motion, numbers);
+    between_steps_adjoint(after, numbers);
+    present_ = numbers, present_is_lean_ = kept.lean;
     this->numbers_ = kept.numbers;
   } else {
     end_reverse();
@@ -99,7 +97,15 @@ template <class T, int Dim>
 void ReversibleStep<T, Dim>::end_reverse() {
   if (!waiting_) return;
   waiting_ = 0;
+  read_present();
   p2g_adjoint();
+}
+
+template <class T, int Dim>
+void ReversibleStep<T, Dim>::read_present() {
+  if (present_ == nullptr) return;
+  read_fields(this->bodies_, present_is_lean_ ? Part::material : Part::all, present_);
+  present_ = nullptr;
 }
 
 template <class T, int Dim>
@@ -131,6 +137,7 @@ void ReversibleStep<T, Dim>::g2p_adjoint() {
                  g2p_reports_[t]);
   });
   add_g2p_reports();
+  bars_move_ = false;
 }
 
 template <class T, int Dim>
@@ -148,20 +155,33 @@ void ReversibleStep<T, Dim>::p2g_adjoint() {
                  *material_adjoints_[tile.body], this->constants_, this->arena_origin(tile), bars_[tile.body], p2g_reports_[t]);
   });
   add_p2g_reports();
+  bars_move_ = true;
 }
 
-/// p2g_adjoint() of the step from the present state, whose constants are `after`, and g2p_adjoint() of the step before it.
+/// p2g_adjoint() of the step from the present state, whose constants are `after`, and g2p_adjoint() of the step before it, from a state of
+/// these numbers.
 template <class T, int Dim>
-void ReversibleStep<T, Dim>::between_steps_adjoint(const StepConstants<T>& after) {
+void ReversibleStep<T, Dim>::between_steps_adjoint(const StepConstants<T>& after, const std::byte* numbers) {
   const auto& tiles = this->blocks_.tiles;
+  std::vector<FieldPlaces> present, before;
+  const std::byte* at = present_;
+  for (const Particles<T, Dim>& p : this->bodies_) {
+    present.push_back(present_ != nullptr ? material_places(p, at) : material_places(p));
+    before.push_back(material_places(p, numbers));
+  }
   p2g_reports_.assign(tiles.size(), {}), g2p_reports_.assign(tiles.size(), {});
   parallel_for_host("jaxmpm::between_steps_adjoint", tiles.size(), [&](std::size_t t) {
     const Tile& tile = tiles[t];
-    adjoint_.between_steps(this->bodies_[tile.body], before_[tile.body], tile, this->blocks_, *this->materials_[tile.body],
-                           *material_adjoints_[tile.body], this->arena_origin(tile), this->domain_,
-                           this->arenas_.data() + t * this->kernels_.arena_size, bars_[tile.body],
+    static thread_local TileFields<T, Dim> fields;
+    fields.open(tile, this->bodies_[tile.body], present[tile.body], before[tile.body], bars_[tile.body], bars_move_);
+    adjoint_.between_steps(fields.present, fields.before, {tile.body, tile.block, 0, tile.end - tile.begin}, this->blocks_,
+                           *this->materials_[tile.body], *material_adjoints_[tile.body], this->arena_origin(tile), this->domain_,
+                           this->arenas_.data() + t * this->kernels_.arena_size, fields.bars,
                            {after, this->constants_, grid_adjoint_.by_sums(), this->grid_.grid(), p2g_reports_[t], g2p_reports_[t]});
+    fields.close(tile, bars_[tile.body]);
   });
+  if (bars_move_) clear_motion(bars_);
+  bars_move_ = false;
   add_p2g_reports();
   add_g2p_reports();
 }
@@ -266,7 +286,7 @@ std::unique_ptr<KeptState> ReversibleStep<T, Dim>::keep(std::byte* numbers, bool
 template <class T, int Dim>
 void ReversibleStep<T, Dim>::go_back(const KeptState& state, const std::byte* numbers) {
   const Kept& kept = static_cast<const Kept&>(state);
-  if (waiting_ == kept.serial) return;  // it is the present one
+  if (waiting_ == kept.serial) return read_present();  // it is the present one
   end_reverse();
   read_fields(this->bodies_, kept.lean ? Part::material : Part::all, numbers);
   this->numbers_ = kept.numbers, sums_kept_ = false;
@@ -287,18 +307,14 @@ void ReversibleStep<T, Dim>::start_reverse() {
   this->grid_.keep_sums();
   grid_adjoint_.clear_bars();
   material_totals_.assign(this->bodies_.size(), {});
-  flip_fraction_ = 0, waiting_ = 0;
-  bars_.clear(), before_.clear();
-  for (const Particles<T, Dim>& p : this->bodies_) {
-    bars_.push_back(zero_bars(p));
-    if (!adjoint_.between_steps) continue;
-    Particles<T, Dim>& before = before_.emplace_back();
-    before.position = p.position, before.compression = p.compression, before.history = p.history, before.dilation = p.dilation;
-  }
+  flip_fraction_ = 0, waiting_ = 0, present_ = nullptr, bars_move_ = false;
+  bars_.clear();
+  for (const Particles<T, Dim>& p : this->bodies_) bars_.push_back(zero_bars(p));
 }
 
 template <class T, int Dim>
 void ReversibleStep<T, Dim>::add_gradient(const SnapshotGradient& by) {
+  bars_move_ = true;
   for (std::size_t b = 0; b < by.size(); ++b) {
     add_body_gradient(b, by[b]);
     if (!by[b].stress.empty()) add_stress_gradient(b, by[b]);

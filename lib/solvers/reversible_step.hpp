@@ -55,7 +55,8 @@ class ReversibleStep final : public ExplicitStep<T, Dim>, public ReversibleSolve
   void g2p_adjoint();
   void update_grid_adjoint(double dt);
   void p2g_adjoint();
-  void between_steps_adjoint(const StepConstants<T>& after);
+  void between_steps_adjoint(const StepConstants<T>& after, const std::byte* numbers);
+  void read_present();
   void unsort(const Orders& orders);
   void add_report(std::size_t tile, const MaterialReport& report);
   void add_g2p_reports();
@@ -71,7 +72,9 @@ class ReversibleStep final : public ExplicitStep<T, Dim>, public ReversibleSolve
   std::shared_ptr<const Epoch> epoch_;             // of the present state, unless it has been sorted since:
   std::uint64_t epoch_sorts_ = ~std::uint64_t(0);  // sorts_ when it was
   std::vector<Particles<T, Dim>> bars_;            // derivatives by the particles' fields, in storage order
-  std::vector<Particles<T, Dim>> before_;          // the material's fields of the state before the present one
+  bool bars_move_ = false;                         // those by what particles move with are not all zero
+  const std::byte* present_ = nullptr;             // numbers of the present state, where bodies_ has yet to be read from them
+  bool present_is_lean_ = false;
   std::uint64_t waiting_ = 0;                     // serial of the present state where p2g_adjoint() of the step from it is still to be done
   std::uint64_t serials_ = 0;                     // of kept states so far
   std::uint64_t kept_sorts_ = ~std::uint64_t(0);  // sorts_ at the last keep()

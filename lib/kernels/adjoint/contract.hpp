@@ -9,6 +9,6 @@ namespace jaxmpm {
 
 /// Masses: as of Scatter.
 template <class Sch, bool Masses>
-using NodeContraction = std::conditional_t<Sch::Dim == 2, Contraction2d<Sch, Masses>, Contraction3d<Sch>>;
+using NodeContraction = std::conditional_t<Sch::Dim == 2, Contraction2d<Sch, Masses>, Contraction3d<Sch, Masses>>;
 
 }  // namespace jaxmpm

@@ -84,8 +84,8 @@ template <class Sch>
 class G2pAdjoint {
   using T = typename Sch::T;
   using G = GatheredGroups<Sch>;
-  using Stencil = Stencils<Sch, Sch::g2p_moments, Sch::g2p_slopes, true>;
   using Contract = NodeContraction<Sch, false>;
+  using Stencil = typename Contract::template GatherStencil<Sch::g2p_moments, Sch::g2p_slopes>;
   static constexpr int Dim = Sch::Dim, W = batch<T>;
 
  public:
@@ -116,9 +116,8 @@ class G2pAdjoint {
     Pack<T, W> bars[G::padded];
     for (auto& b : bars) b = Pack<T, W>(T(0));
     update_particles_adjoint<Sch>(p, s, count, batch.gathered, material_, step_, domain_, bar, bars, report);
-    const ParticleValues<Sch, G> values(bars);
-    bars_.add(batch.t, count, values);
-    velocities_.add_by_place(batch.t, s, count, values, batch.sums, bar);
+    velocities_.template add_by_place<G>(batch.t, s, count, bars, batch.sums, bar);
+    bars_.add(batch.t, count, ParticleValues<Sch, G>(bars));
   }
 
   /// Once all batches are done.

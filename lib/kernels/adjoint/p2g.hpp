@@ -88,6 +88,7 @@ class P2gAdjoint {
   using T = typename Sch::T;
   using Q = Coefficients<Sch>;
   using G = GatheredBars<Sch>;
+  using Contract = NodeContraction<Sch, true>;
   static constexpr int Dim = Sch::Dim, W = batch<T>;
 
  public:
@@ -97,11 +98,11 @@ class P2gAdjoint {
 
   template <class Count>
   JAXMPM_ONCE void reverse(const Particles<T, Dim>& p, std::size_t s, Count count, Particles<T, Dim>& bar, MaterialReport& report) {
-    const Stencils<Sch, G::with_d, G::with_g, true> t(p, s, count, origin_);
+    const typename Contract::template Stencil<G::with_d, G::with_g> t(p, s, count, origin_);
     alignas(64) typename Q::Stress sigma;
     Q q(p, s, count, material_, step_, sigma);
     Pack<T, W> gathered[G::padded];
-    nodes_.template contract<G>(t, s, count, ParticleValues<Sch, Q>(q.value), gathered, bar);
+    nodes_.template contract<G, Q>(t, s, count, q.value, gathered, bar);
     coefficients_adjoint<Sch>(p, s, count, q, sigma, gathered, material_, material_adjoint_, step_, bar, report);
   }
 
@@ -110,7 +111,7 @@ class P2gAdjoint {
   const MaterialAdjoint<T, Dim>& material_adjoint_;
   const StepConstants<T>& step_;
   const Index<Dim>& origin_;
-  NodeContraction<Sch, true> nodes_;
+  Contract nodes_;
 };
 
 /// Adjoint of particles to grid for particles [begin, end).
