@@ -32,22 +32,27 @@ struct SplineAt {
 /// ⅓ Σ g n − q²/6 Σ g'' n for cubic ones (the moments of w itself, which B-splines reproduce up to order S − 1, fix the terms).
 template <int S, class Real>
 struct SplinePlace {
-  Real t, half, third;           // t and its parts
+  Real power[S];                      // t^k / k!
   Real of_highest, of_highest_slope;  // factor of the highest derivative in a moment, and its derivative by t
   static constexpr double of_slope = S == 2 ? 0 : Bspline<S>::second_moment;
 
   SplinePlace() = default;
   JAXMPM_INLINE explicit SplinePlace(Real f) {
-    t = f - Real(0.5 * (S - 1)), half = Real(0.5) * t, third = Real(1.0 / 3) * t;
-    const Real q = Real(0.25) - t * t;
+    const Real t = f - Real(0.5 * (S - 1)), q = Real(0.25) - t * t;
+    power[0] = Real(1);
+    for (int k = 1; k < S; ++k) power[k] = Real(1.0 / k) * t * power[k - 1];
     if constexpr (S == 2) of_highest = q, of_highest_slope = Real(-2) * t;
-    else if constexpr (S == 3) of_highest = half * q, of_highest_slope = Real(0.5) * q - t * t;
+    else if constexpr (S == 3) of_highest = Real(0.5) * t * q, of_highest_slope = Real(0.5) * q - t * t;
     else of_highest = Real(-1.0 / 6) * q * q, of_highest_slope = Real(2.0 / 3) * t * q;
   }
-  JAXMPM_INLINE SplineAt<Real> along(const Real (&c)[S]) const {
-    if constexpr (S == 2) return {c[0] + t * c[1], c[1], Real(0), c[1]};
-    else if constexpr (S == 3) return {c[0] + t * (c[1] + half * c[2]), c[1] + t * c[2], c[2], c[2]};
-    else return {c[0] + t * (c[1] + half * (c[2] + third * c[3])), c[1] + t * (c[2] + half * c[3]), c[2] + t * c[3], c[3]};
+  /// Adds what coefficient k brings; 0 comes first, S − 1 last.
+  template <int k>
+  JAXMPM_INLINE void add(SplineAt<Real>& sum, Real c) const {
+    sum.value = k == 0 ? c : sum.value + power[k] * c;
+    if constexpr (k >= 1) sum.slope = k == 1 ? c : sum.slope + power[k - 1] * c;
+    if constexpr (k >= 2) sum.curvature = k == 2 ? c : sum.curvature + power[k - 2] * c;
+    else if constexpr (S == 2) sum.curvature = Real(0);
+    if constexpr (k == S - 1) sum.highest = c;
   }
 };
 

@@ -70,32 +70,29 @@ struct FieldAt {
 /// From the coefficients of one value, `stride` apart.
 template <int S, int stride, class P>
 JAXMPM_INLINE FieldAt<P> field_at(const typename P::Scalar* coefficient, const SplinePlace<S, P> (&place)[3]) {
-  using Along = SplineAt<P>;
   const auto& [x, y, z] = place;
-  // Named by what has been done along y and along z: v value, s slope, c curvature, h the highest derivative.
-  P vv[S], sv[S], cv[S], hv[S], vs[S], ss[S], hs[S], vc[S], vh[S], sh[S];
-  for (int i = 0; i < S; ++i) {
-    P v[S], s[S], c[S], h[S];
-    for (int j = 0; j < S; ++j) {
-      P order[S];
-      for (int k = 0; k < S; ++k) order[k] = P(coefficient[((i * S + j) * S + k) * stride]);
-      const Along along = z.along(order);
-      v[j] = along.value, s[j] = along.slope, c[j] = along.curvature, h[j] = along.highest;
-    }
-    const Along of_v = y.along(v), of_s = y.along(s), of_c = y.along(c), of_h = y.along(h);
-    vv[i] = of_v.value, sv[i] = of_v.slope, cv[i] = of_v.curvature, hv[i] = of_v.highest;
-    vs[i] = of_s.value, ss[i] = of_s.slope, hs[i] = of_s.highest;
-    vc[i] = of_c.value, vh[i] = of_h.value, sh[i] = of_h.slope;
-  }
+  // Named by what is done along y and along z: v value, s slope, c curvature, h the highest derivative.
+  SplineAt<P> vv, sv, cv, hv, vs, ss, hs, vc, vh, sh;
+  static_for<S>([&](auto i) JAXMPM_INLINE_LAMBDA {
+    SplineAt<P> v, s, c, h;  // by what is done along z
+    static_for<S>([&](auto j) JAXMPM_INLINE_LAMBDA {
+      SplineAt<P> line;
+      static_for<S>([&](auto k) JAXMPM_INLINE_LAMBDA { z.template add<k>(line, P(coefficient[((i * S + j) * S + k) * stride])); });
+      y.template add<j>(v, line.value), y.template add<j>(s, line.slope);
+      y.template add<j>(c, line.curvature), y.template add<j>(h, line.highest);
+    });
+    x.template add<i>(vv, v.value), x.template add<i>(sv, v.slope), x.template add<i>(cv, v.curvature), x.template add<i>(hv, v.highest);
+    x.template add<i>(vs, s.value), x.template add<i>(ss, s.slope), x.template add<i>(hs, s.highest);
+    x.template add<i>(vc, c.value), x.template add<i>(vh, h.value), x.template add<i>(sh, h.slope);
+  });
   FieldAt<P> f;
   const auto set_mixed = [&](int j, int k, P value) { f.curvature[j][k] = f.curvature[k][j] = value; };
-  const Along of_vv = x.along(vv), of_sv = x.along(sv), of_vs = x.along(vs), of_hv = x.along(hv), of_vh = x.along(vh);
-  f.value = of_vv.value, f.slope[0] = of_vv.slope, f.slope[1] = of_sv.value, f.slope[2] = of_vs.value;
-  f.curvature[0][0] = of_vv.curvature, f.curvature[1][1] = x.along(cv).value, f.curvature[2][2] = x.along(vc).value;
-  set_mixed(0, 1, of_sv.slope), set_mixed(0, 2, of_vs.slope), set_mixed(1, 2, x.along(ss).value);
-  f.highest[0] = of_vv.highest, f.highest_slope[0][1] = of_sv.highest, f.highest_slope[0][2] = of_vs.highest;
-  f.highest[1] = of_hv.value, f.highest_slope[1][0] = of_hv.slope, f.highest_slope[1][2] = x.along(hs).value;
-  f.highest[2] = of_vh.value, f.highest_slope[2][0] = of_vh.slope, f.highest_slope[2][1] = x.along(sh).value;
+  f.value = vv.value, f.slope[0] = vv.slope, f.slope[1] = sv.value, f.slope[2] = vs.value;
+  f.curvature[0][0] = vv.curvature, f.curvature[1][1] = cv.value, f.curvature[2][2] = vc.value;
+  set_mixed(0, 1, sv.slope), set_mixed(0, 2, vs.slope), set_mixed(1, 2, ss.value);
+  f.highest[0] = vv.highest, f.highest_slope[0][1] = sv.highest, f.highest_slope[0][2] = vs.highest;
+  f.highest[1] = hv.value, f.highest_slope[1][0] = hv.slope, f.highest_slope[1][2] = hs.value;
+  f.highest[2] = vh.value, f.highest_slope[2][0] = vh.slope, f.highest_slope[2][1] = sh.value;
   return f;
 }
 
