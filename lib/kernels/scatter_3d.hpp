@@ -61,38 +61,43 @@ class Scatter3d {
  public:
   explicit Scatter3d(T* arena) : arena_(arena) {
     std::memset(arena, 0, sizeof(T) * Sch::arena_size);
-    clear();
+    rows_.clear(-1);
   }
 
   /// `count` particles, those of the stencils t.
   template <class Terms, class Stencil>
   JAXMPM_INLINE void add(const Stencil& t, int count, const Values3d<T, Terms>& values) {
+    Rows now = rows_;  // in registers
     for (int l = 0; l < count; ++l) {
-      if (t.base[l] != current_) {
-        finish();
-        clear();
-        current_ = t.base[l];
+      if (t.base[l] != now.base) {
+        now.add_to(arena_);
+        now.clear(t.base[l]);
       }
       static_for<Sch::planes>([&](auto plane) JAXMPM_INLINE_LAMBDA {
         constexpr PlaneTerms of = Terms::in_plane(plane);
-        scatter_3d<Sch, of.rest, of.moments, of.slopes>(rows_[plane], t, l, values.rows.row(l));
+        scatter_3d<Sch, of.rest, of.moments, of.slopes>(now.plane[plane], t, l, values.rows.row(l));
       });
     }
+    rows_ = now;
   }
   /// Once all particles have been added.
-  JAXMPM_INLINE void finish() {
-    for (int plane = 0; current_ >= 0 && plane < Sch::planes; ++plane)
-      rows_[plane].add_to(arena_ + plane * Sch::arena_plane + current_ * 4);
-  }
+  JAXMPM_INLINE void finish() { rows_.add_to(arena_); }
 
  private:
+  /// Sums at the nodes around one base node, still to be added to the arena.
+  struct Rows {
+    StencilRows3d<Sch> plane[Sch::planes];
+    int base;  // −1: of none
+    JAXMPM_INLINE void clear(int next) {
+      for (auto& rows : plane) rows.clear();
+      base = next;
+    }
+    JAXMPM_INLINE void add_to(T* arena) const {
+      for (int k = 0; base >= 0 && k < Sch::planes; ++k) plane[k].add_to(arena + k * Sch::arena_plane + base * 4);
+    }
+  };
   T* arena_;
-  StencilRows3d<Sch> rows_[Sch::planes];
-  int current_ = -1;  // base node of rows_
-
-  JAXMPM_INLINE void clear() {
-    for (auto& r : rows_) r.clear();
-  }
+  Rows rows_;
 };
 
 }  // namespace jaxmpm
