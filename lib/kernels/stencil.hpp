@@ -5,8 +5,8 @@
 
 namespace jaxmpm {
 
-template <class Sch, bool Moments, bool Slopes, bool Derived = false>
-using Stencils = std::conditional_t<Sch::Dim == 2, Stencils2d<Sch, Moments, Slopes, Derived>, Stencils3d<Sch, Moments, Slopes>>;
+template <class Sch, bool Moments, bool Slopes>
+using Stencils = std::conditional_t<Sch::Dim == 2, Stencils2d<Sch, Moments, Slopes, false>, Stencils3d<Sch, Moments, Slopes>>;
 
 /// What W particles give, ready for Scatter. Terms: see PlaneTerms.
 template <class Sch, class Terms>

@@ -17,23 +17,22 @@ struct Stretch {
   std::size_t offset, size;
 };
 
-/// Which fields of a kept state: those of the material, what particles move with, or both.
-enum class Part { material, motion, all };
-
-/// The fields that a step changes, in the order of a kept state, in pieces that several threads can share.
+/// The fields that a step changes, in the order of a kept state, in pieces that several threads can share. Lean: without what particles move
+/// with, which comes last.
 template <class T, int Dim>
-std::vector<Stretch> stretches(std::vector<Particles<T, Dim>>& bodies, Part part) {
+std::vector<Stretch> stretches(std::vector<Particles<T, Dim>>& bodies, bool lean) {
   constexpr std::size_t piece = std::size_t(1) << 15;
   std::vector<Stretch> all;
   std::size_t offset = 0;
-  const auto add = [&](auto& field, bool wanted) {
+  const auto add = [&](auto& field) {
     const std::size_t bytes = field.size() * sizeof(field[0]);
-    for (std::size_t done = 0; wanted && done < bytes; done += piece)
+    for (std::size_t done = 0; done < bytes; done += piece)
       all.push_back({reinterpret_cast<std::byte*>(field.data()) + done, offset + done, std::min(piece, bytes - done)});
     offset += bytes;
   };
-  for (Particles<T, Dim>& p : bodies) p.for_each_material_field([&](auto& field) { add(field, part != Part::motion); });
-  for (Particles<T, Dim>& p : bodies) p.for_each_motion_field([&](auto& field) { add(field, part != Part::material); });
+  for (Particles<T, Dim>& p : bodies) p.for_each_material_field(add);
+  if (!lean)
+    for (Particles<T, Dim>& p : bodies) p.for_each_motion_field(add);
   return all;
 }
 
@@ -50,8 +49,8 @@ void copy_stretches(const std::vector<Stretch>& stretches, Copy&& copy) {
 
 /// Copies fields out of a kept state's numbers.
 template <class T, int Dim>
-void read_fields(std::vector<Particles<T, Dim>>& bodies, Part part, const std::byte* numbers) {
-  copy_stretches(stretches(bodies, part),
+void read_fields(std::vector<Particles<T, Dim>>& bodies, bool lean, const std::byte* numbers) {
+  copy_stretches(stretches(bodies, lean),
                  [&](std::byte* field, std::size_t offset, std::size_t size) { std::memcpy(field, numbers + offset, size); });
 }
 
@@ -104,7 +103,7 @@ void ReversibleStep<T, Dim>::end_reverse() {
 template <class T, int Dim>
 void ReversibleStep<T, Dim>::read_present() {
   if (present_ == nullptr) return;
-  read_fields(this->bodies_, present_is_lean_ ? Part::material : Part::all, present_);
+  read_fields(this->bodies_, present_is_lean_, present_);
   present_ = nullptr;
 }
 
@@ -155,7 +154,6 @@ void ReversibleStep<T, Dim>::p2g_adjoint() {
                  *material_adjoints_[tile.body], this->constants_, this->arena_origin(tile), bars_[tile.body], p2g_reports_[t]);
   });
   add_p2g_reports();
-  bars_move_ = true;
 }
 
 /// p2g_adjoint() of the step from the present state, whose constants are `after`, and g2p_adjoint() of the step before it, from a state of
@@ -276,7 +274,7 @@ std::unique_ptr<KeptState> ReversibleStep<T, Dim>::keep(std::byte* numbers, bool
   end_reverse();
   auto kept = std::make_unique<Kept>();
   kept->lean = lean;
-  copy_stretches(stretches(this->bodies_, lean ? Part::material : Part::all),
+  copy_stretches(stretches(this->bodies_, lean),
                  [&](std::byte* field, std::size_t offset, std::size_t size) { std::memcpy(numbers + offset, field, size); });
   kept->epoch = present_epoch(), kept->numbers = this->numbers_, kept->serial = ++serials_;
   kept_sorts_ = this->sorts_, sums_kept_ = false;
@@ -288,7 +286,7 @@ void ReversibleStep<T, Dim>::go_back(const KeptState& state, const std::byte* nu
   const Kept& kept = static_cast<const Kept&>(state);
   if (waiting_ == kept.serial) return read_present();  // it is the present one
   end_reverse();
-  read_fields(this->bodies_, kept.lean ? Part::material : Part::all, numbers);
+  read_fields(this->bodies_, kept.lean, numbers);
   this->numbers_ = kept.numbers, sums_kept_ = false;
   if (kept.epoch == epoch_ && epoch_sorts_ == this->sorts_) return;
   epoch_ = kept.epoch, epoch_sorts_ = this->sorts_;

@@ -72,7 +72,7 @@ class ReversibleStep final : public ExplicitStep<T, Dim>, public ReversibleSolve
   std::shared_ptr<const Epoch> epoch_;             // of the present state, unless it has been sorted since:
   std::uint64_t epoch_sorts_ = ~std::uint64_t(0);  // sorts_ when it was
   std::vector<Particles<T, Dim>> bars_;            // derivatives by the particles' fields, in storage order
-  bool bars_move_ = false;                         // those by what particles move with are not all zero
+  bool bars_move_ = false;                         // add_gradient() may have made those by motion not zero since the last step
   const std::byte* present_ = nullptr;             // numbers of the present state, where bodies_ has yet to be read from them
   bool present_is_lean_ = false;
   std::uint64_t waiting_ = 0;                     // serial of the present state where p2g_adjoint() of the step from it is still to be done

@@ -1,6 +1,7 @@
 #pragma once
 // One tile's particles on their way through the reverse step: copies that stay in a core's cache, so that what a state moves with, and the
 // derivatives by it, never go to memory, and kept states are read where they lie.
+#include <algorithm>
 #include <cstddef>
 #include <cstring>
 #include <vector>
@@ -36,56 +37,47 @@ class TileFields {
   /// Takes the particles of a tile of `body`, whose derivatives are `from`. `moving`: those by what it moves with are not zero.
   void open(const Tile& tile, const Particles<T, Dim>& body, const FieldPlaces& present_at, const FieldPlaces& before_at,
             const Particles<T, Dim>& from, bool moving) {
-    const std::size_t count = tile.end - tile.begin;
+    const std::size_t begin = tile.begin, count = tile.end - begin;
     make_room(body, count);
-    read_material(present, present_at, tile.begin, count), read_material(before, before_at, tile.begin, count);
-    std::memcpy(present.mass.data(), body.mass.data() + tile.begin, count * sizeof(T));
-    copy(from, tile.begin, bars, 0, count);
-    for_each_pair(from.velocity, bars.velocity, [&](const Array<T>& a, Array<T>& b) { set(a, b, tile.begin, count, moving); });
-    for_each_pair(from.affine, bars.affine, [&](const Array<T>& a, Array<T>& b) { set(a, b, tile.begin, count, moving); });
+    copy_material(present_at, begin, present, 0, count), copy_material(before_at, begin, before, 0, count);
+    copy_material(material_places(from), begin, bars, 0, count);
+    copy(body.mass, begin, present.mass, 0, count), copy(from.mass, begin, bars.mass, 0, count);
+    const auto take_motion = [&](const std::vector<Array<T>>& all, std::vector<Array<T>>& into) {
+      for (std::size_t k = 0; k < all.size(); ++k) {
+        if (moving) copy(all[k], begin, into[k], 0, count);
+        else std::fill_n(into[k].begin(), count, T(0));
+      }
+    };
+    take_motion(from.velocity, bars.velocity), take_motion(from.affine, bars.affine);
   }
   /// Gives the derivatives back; those by what the particles move with are zero now, and stay here.
-  void close(const Tile& tile, Particles<T, Dim>& to) const { copy(bars, 0, to, tile.begin, tile.end - tile.begin); }
+  void close(const Tile& tile, Particles<T, Dim>& to) const {
+    const std::size_t count = tile.end - tile.begin;
+    copy_material(material_places(bars), 0, to, tile.begin, count), copy(bars.mass, 0, to.mass, tile.begin, count);
+  }
 
  private:
-  template <class A, class B, class F>
-  static void for_each_pair(const A& a, B& b, F f) {
-    for (std::size_t k = 0; k < a.size(); ++k) f(a[k], b[k]);
+  static void copy(const Array<T>& from, std::size_t begin, Array<T>& to, std::size_t at, std::size_t count) {
+    std::memcpy(to.data() + at, from.data() + begin, count * sizeof(T));
   }
-  static void set(const Array<T>& from, Array<T>& to, std::size_t begin, std::size_t count, bool moving) {
-    if (moving) std::memcpy(to.data(), from.data() + begin, count * sizeof(T));
-    else std::memset(to.data(), 0, count * sizeof(T));
-  }
-  /// Derivatives by mass and by the material's fields.
-  static void copy(const Particles<T, Dim>& from, std::size_t begin, Particles<T, Dim>& to, std::size_t at, std::size_t count) {
-    const FieldPlaces places = material_places(from);
+  static void copy_material(const FieldPlaces& from, std::size_t begin, Particles<T, Dim>& to, std::size_t at, std::size_t count) {
     std::size_t k = 0;
     to.for_each_material_field([&](auto& field) {
       constexpr std::size_t size = sizeof(field[0]);
-      std::memcpy(field.data() + at, places[k++] + begin * size, count * size);
-    });
-    std::memcpy(to.mass.data() + at, from.mass.data() + begin, count * sizeof(T));
-  }
-  static void read_material(Particles<T, Dim>& p, const FieldPlaces& places, std::size_t begin, std::size_t count) {
-    std::size_t k = 0;
-    p.for_each_material_field([&](auto& field) {
-      constexpr std::size_t size = sizeof(field[0]);
-      std::memcpy(field.data(), places[k++] + begin * size, count * size);
+      std::memcpy(field.data() + at, from[k++] + begin * size, count * size);
     });
   }
   /// For `count` particles with the fields that the body has.
   void make_room(const Particles<T, Dim>& body, std::size_t count) {
+    const auto grow = [&](auto& array) {
+      if (array.size() < count) array.resize(count);
+    };
     for (Particles<T, Dim>* p : {&present, &before, &bars}) {
-      const auto fit = [&](auto& arrays, std::size_t wanted) {
-        arrays.resize(wanted);
-        for (auto& array : arrays)
-          if (array.size() < count) array.resize(count);
-      };
-      fit(p->position, Dim), fit(p->history, body.history.size()), fit(p->dilation, body.dilation.size());
-      if (p->compression.size() < count) p->compression.resize(count);
+      p->position.resize(Dim), p->history.resize(body.history.size()), p->dilation.resize(body.dilation.size());
+      p->for_each_material_field(grow);
       if (p == &before) continue;
-      fit(p->velocity, Dim), fit(p->affine, body.affine.size());
-      if (p->mass.size() < count) p->mass.resize(count);
+      p->velocity.resize(Dim), p->affine.resize(body.affine.size());
+      p->for_each_motion_field(grow), grow(p->mass);
     }
   }
 };

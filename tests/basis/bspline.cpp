@@ -3,7 +3,10 @@
 
 #include <catch2/catch.hpp>
 
+#include "basis/spline_in_cell.hpp"
+
 #include "core/dual.hpp"
+#include "core/pack.hpp"
 
 using namespace jaxmpm;
 
@@ -53,6 +56,33 @@ void check_derivatives() {
   }
 }
 
+/// Σ over the nodes of a factor × some values, against the polynomial of those values.
+template <int S>
+void check_polynomials() {
+  const double all[] = {0.7, -1.3, 2.1, 0.4};
+  double n[S], c[S];
+  for (int i = 0; i < S; ++i) n[i] = all[i];
+  spline_coefficients(n, c);
+  for (const double f : offsets<S>()) {
+    double w[S], g[S], k[S], value = 0, slope = 0, curvature = 0, moment = 0, moment_slope = 0;
+    Bspline<S>::weights(f, w), Bspline<S>::slopes(f, g), Bspline<S>::curvatures(f, k);
+    for (int i = 0; i < S; ++i) {
+      value += w[i] * n[i], slope += g[i] * n[i], curvature += k[i] * n[i];
+      moment += w[i] * (i - f) * n[i], moment_slope += (g[i] * (i - f) - w[i]) * n[i];
+    }
+    const SplinePlace<S, double> place(f);
+    SplineAt<double> at{};
+    static_for<S>([&](auto order) { place.template add<order>(at, c[order]); });
+    INFO(S << " nodes, offset " << f);
+    CHECK(at.value == Approx(value).margin(1e-14));
+    CHECK(at.slope == Approx(slope).margin(1e-14));
+    CHECK(at.curvature == Approx(curvature).margin(1e-14));
+    CHECK(at.highest == Approx(S == 2 ? n[1] - n[0] : S == 3 ? n[0] - 2 * n[1] + n[2] : n[3] - n[0] - 3 * (n[2] - n[1])));
+    CHECK(place.of_slope * at.slope + place.of_highest * at.highest == Approx(moment).margin(1e-14));
+    CHECK(place.of_slope * at.curvature + place.of_highest_slope * at.highest == Approx(moment_slope).margin(1e-14));
+  }
+}
+
 }  // namespace
 
 TEST_CASE("splines sum to one and reproduce positions, and their second moment is the same everywhere") {
@@ -75,4 +105,10 @@ TEST_CASE("splines of the smooth bases go on from cell to cell") {
   Bspline<4>::weights(2.0, left), Bspline<4>::weights(1.0, right);
   CHECK(left[0] == Approx(0).margin(1e-15));
   for (int i = 0; i < 3; ++i) CHECK(left[i + 1] == Approx(right[i]).margin(1e-15));
+}
+
+TEST_CASE("in a cell a spline is a polynomial, and moments follow from its derivatives") {
+  check_polynomials<2>();
+  check_polynomials<3>();
+  check_polynomials<4>();
 }

@@ -79,8 +79,7 @@ class Contraction3d {
     for (int k = 0; k < Dim; ++k) {
       if constexpr (moments >= 0) {
         const P B = value(moments + k), of_highest = B * place[k].of_highest;
-        for (int j = 0; j < Dim; ++j)
-          sums[j] += j == k ? B * place[k].of_highest_slope * f.highest[k] : of_highest * f.highest_slope[k][j];
+        for (int j = 0; j < Dim; ++j) sums[j] += j == k ? B * place[k].of_highest_slope * f.highest[k] : of_highest * f.highest_slope[k][j];
       }
       if constexpr (moments >= 0 || slopes >= 0) {
         P C(T(0));
