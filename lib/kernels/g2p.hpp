@@ -24,11 +24,10 @@ struct GatheredGroups {
 
 /// tr H += part (θ̄ − θ): takes part of the last step's change of volume θ back and puts the mean of the nodes around in its place. Returns
 /// tr H as it was.
-template <class T, int Dim>
-JAXMPM_INLINE Pack<T, batch<T>> average_volume(const Particles<T, Dim>& p, std::size_t s, int count, Pack<T, batch<T>> mean, T part,
-                                               T H[][batch<T>]) {
+template <int Dim, class T>
+JAXMPM_INLINE Pack<T, batch<T>> average_volume(const T* theta, int count, Pack<T, batch<T>> mean, T part, T H[][batch<T>]) {
   using P = Pack<T, batch<T>>;
-  const P share = P(part / T(Dim)) * (mean - load(p.dilation[0].data() + s, count));
+  const P share = P(part / T(Dim)) * (mean - load(theta, count));
   P trace(T(0));
   for (int c = 0; c < Dim; ++c) {
     const P along = P::load(H[c * (Dim + 1)]);
@@ -39,7 +38,7 @@ JAXMPM_INLINE Pack<T, batch<T>> average_volume(const Particles<T, Dim>& p, std::
 
 /// The affine field that follows from what was gathered.
 template <class Sch>
-JAXMPM_INLINE void store_affine(Particles<typename Sch::T, Sch::Dim>& p, std::size_t s, int count,
+JAXMPM_INLINE void store_affine(ParticleView<typename Sch::T, Sch::Dim>& p, std::size_t s, int count,
                                 const Pack<typename Sch::T, batch<typename Sch::T>>* gathered, const StepConstants<typename Sch::T>& step) {
   using G = GatheredGroups<Sch>;
   if constexpr (Sch::affine) {
@@ -53,7 +52,7 @@ JAXMPM_INLINE void store_affine(Particles<typename Sch::T, Sch::Dim>& p, std::si
 
 /// Moves W particles and advances their material.
 template <class Sch>
-JAXMPM_INLINE void update_particles(Particles<typename Sch::T, Sch::Dim>& p, std::size_t s, int count,
+JAXMPM_INLINE void update_particles(ParticleView<typename Sch::T, Sch::Dim>& p, std::size_t s, int count,
                                     const Pack<typename Sch::T, batch<typename Sch::T>>* gathered,
                                     const MaterialKernel<typename Sch::T, Sch::Dim>& material, const StepConstants<typename Sch::T>& step,
                                     bool account, const DomainBounds<Sch::Dim>& domain, TileReport& report) {
@@ -88,7 +87,8 @@ JAXMPM_INLINE void update_particles(Particles<typename Sch::T, Sch::Dim>& p, std
     }
   if constexpr (Sch::dilation)
     if (!p.dilation.empty())
-      store(p.dilation[0].data() + s, average_volume(p, s, count, gathered[G::theta], step.volume_averaging, H), count);
+      store(p.dilation[0].data() + s, average_volume<Dim>(p.dilation[0].data() + s, count, gathered[G::theta], step.volume_averaging, H),
+            count);
   sqrt(speed2).store(speed);
   material.update(p, s, count, H, speed, step.dt, account, report);
   report.displacement = std::max(report.displacement, double(largest(moved)));
@@ -96,7 +96,7 @@ JAXMPM_INLINE void update_particles(Particles<typename Sch::T, Sch::Dim>& p, std
 
 /// Gathers to particles [begin, end) of a body from the nodes around them and advances their material. `origin`: node 0 of the arena.
 template <class Sch>
-TileReport g2p_tile(Particles<typename Sch::T, Sch::Dim>& p, std::size_t begin, std::size_t end,
+TileReport g2p_tile(ParticleView<typename Sch::T, Sch::Dim>& p, std::size_t begin, std::size_t end,
                     const MaterialKernel<typename Sch::T, Sch::Dim>& material, const StepConstants<typename Sch::T>& step, bool account,
                     const Index<Sch::Dim>& origin, const DomainBounds<Sch::Dim>& domain, const Nodes<Sch, false>& around) {
   using T = typename Sch::T;

@@ -6,7 +6,7 @@
 #include "core/pack.hpp"
 #include "core/tensor.hpp"
 #include "scene/model.hpp"
-#include "state/particles.hpp"
+#include "state/particle_view.hpp"
 
 namespace jaxmpm {
 
@@ -30,10 +30,10 @@ class MaterialKernel {
   virtual int plastic_strain_index() const = 0;
 
   /// Cauchy stress of `count` particles from s: sigma[component][lane], Pa.
-  virtual void stress(const Particles<T, Dim>& p, std::size_t s, int count, T sigma[][native_lanes<T>]) const = 0;
+  virtual void stress(const ParticleView<T, Dim>& p, std::size_t s, int count, T sigma[][native_lanes<T>]) const = 0;
   /// Advances compression and history of `count` particles from s by H = Δt∇v (H[component][lane]), in place; speed[lane]: |v|, for c +
   /// |v|.
-  virtual void update(Particles<T, Dim>& p, std::size_t s, int count, const T H[][native_lanes<T>], const T speed[native_lanes<T>], T dt,
+  virtual void update(ParticleView<T, Dim>& p, std::size_t s, int count, const T H[][native_lanes<T>], const T speed[native_lanes<T>], T dt,
                       bool account, TileReport& report) const = 0;
 
   // One particle at a time, double precision: set-up and output.

@@ -10,14 +10,15 @@ template <class T, int Dim, template <class> class Law>
 class LawKernel final : public MaterialKernel<T, Dim> {
   static constexpr int W = batch<T>, history = Law<T>::template history_size<Dim>(), strain = Law<T>::template plastic_strain_index<Dim>();
   static constexpr int slots = history > 0 ? history : 1;  // arrays of size zero are no C++
+  static_assert(history <= ParticleView<T, Dim>::most_history);
   using P = Pack<T, W>;
   Law<T> law_;
   Law<double> exact_;  // set-up and output
 
-  static void read_history(const Particles<T, Dim>& p, std::size_t s, int count, P* h) {
+  static void read_history(const ParticleView<T, Dim>& p, std::size_t s, int count, P* h) {
     for (int k = 0; k < history; ++k) h[k] = load(p.history[std::size_t(k)].data() + s, count);
   }
-  static P volume(const Particles<T, Dim>& p, std::size_t s, int count, P e, T density) {
+  static P volume(const ParticleView<T, Dim>& p, std::size_t s, int count, P e, T density) {
     return load(p.mass.data() + s, count) / (P(density) * (P(T(1)) + e));
   }
 
@@ -29,14 +30,14 @@ class LawKernel final : public MaterialKernel<T, Dim> {
   int history_size() const override { return history; }
   int plastic_strain_index() const override { return strain; }
 
-  void stress(const Particles<T, Dim>& p, std::size_t s, int count, T sigma[][W]) const override {
+  void stress(const ParticleView<T, Dim>& p, std::size_t s, int count, T sigma[][W]) const override {
     P h[slots];
     read_history(p, s, count, h);
     const auto value = law_.template stress<P, Dim>(load(p.compression.data() + s, count), h);
     for (int k = 0; k < value.size; ++k) value[k].store(sigma[k]);
   }
 
-  void update(Particles<T, Dim>& p, std::size_t s, int count, const T H[][W], const T speed[W], T dt, bool account,
+  void update(ParticleView<T, Dim>& p, std::size_t s, int count, const T H[][W], const T speed[W], T dt, bool account,
               TileReport& report) const override {
     P h[slots];
     read_history(p, s, count, h);

@@ -38,7 +38,7 @@ struct Coefficients {
   }
 
   /// `sigma`: room for the stress, beside the object, which can then stay in registers.
-  JAXMPM_INLINE Coefficients(const Particles<T, Dim>& p, std::size_t s, int count, const MaterialKernel<T, Dim>& material,
+  JAXMPM_INLINE Coefficients(const ParticleView<T, Dim>& p, std::size_t s, int count, const MaterialKernel<T, Dim>& material,
                              const StepConstants<T>& step, Stress& sigma) {
     for (P& x : value) x = P(T(0));
     const auto component = [&](int group, int c) -> P& { return value[V * group + Sch::vector_at + c]; };
@@ -62,7 +62,7 @@ struct Coefficients {
 
 /// Scatters particles [begin, end) of a body to `arena`, which it clears first. `origin`: node 0 of the arena.
 template <class Sch>
-void p2g_tile(const Particles<typename Sch::T, Sch::Dim>& p, std::size_t begin, std::size_t end,
+void p2g_tile(const ParticleView<typename Sch::T, Sch::Dim>& p, std::size_t begin, std::size_t end,
               const MaterialKernel<typename Sch::T, Sch::Dim>& material, const StepConstants<typename Sch::T>& step,
               const Index<Sch::Dim>& origin, typename Sch::T* arena) {
   using T = typename Sch::T;

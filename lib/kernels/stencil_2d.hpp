@@ -4,7 +4,7 @@
 #include "core/tensor.hpp"
 #include "kernels/batch.hpp"
 #include "kernels/scheme.hpp"
-#include "state/particles.hpp"
+#include "state/particle_view.hpp"
 
 namespace jaxmpm {
 
@@ -25,7 +25,7 @@ struct Stencils2d {
   P factor[2][kinds][S];             // [axis][kind][node]
   alignas(64) T first[g + 1][S][W];  // w, d and g of the first axis, to be broadcast
 
-  JAXMPM_INLINE Stencils2d(const Particles<T, 2>& p, std::size_t s, int count, const Index<2>& origin) {
+  JAXMPM_INLINE Stencils2d(const ParticleView<T, 2>& p, std::size_t s, int count, const Index<2>& origin) {
     Pack<int, W> node(0);
     for (int axis = 0; axis < 2; ++axis) {
       const auto X = load_places<W>(p.position[std::size_t(axis)].data() + s, count);

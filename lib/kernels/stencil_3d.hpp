@@ -3,7 +3,7 @@
 // factors of one particle in all lanes, and only those along the last axis are laid out by node.
 #include "kernels/batch.hpp"
 #include "kernels/scheme.hpp"
-#include "state/particles.hpp"
+#include "state/particle_view.hpp"
 
 namespace jaxmpm {
 
@@ -15,7 +15,7 @@ struct StencilPlaces3d {
   alignas(64) int base[W];
   Pack<T, W> offset[Dim];
 
-  JAXMPM_INLINE StencilPlaces3d(const Particles<T, Dim>& p, std::size_t s, int count, const Index<Dim>& origin) {
+  JAXMPM_INLINE StencilPlaces3d(const ParticleView<T, Dim>& p, std::size_t s, int count, const Index<Dim>& origin) {
     Pack<int, W> node(0);
     for (int axis = 0; axis < Dim; ++axis) {
       const auto X = load_places<W>(p.position[std::size_t(axis)].data() + s, count);
@@ -39,7 +39,7 @@ struct Stencils3d : StencilPlaces3d<Sch> {
   alignas(64) T w[Dim - 1][S][W], d[Dim - 1][S][W], g[Dim - 1][S][W];  // axes but the last, to be broadcast
   ParticleRows<T, 4 * quads> last;                                     // the last axis, to be spread
 
-  JAXMPM_INLINE Stencils3d(const Particles<T, Dim>& p, std::size_t s, int count, const Index<Dim>& origin)
+  JAXMPM_INLINE Stencils3d(const ParticleView<T, Dim>& p, std::size_t s, int count, const Index<Dim>& origin)
       : StencilPlaces3d<Sch>(p, s, count, origin) {
     for (int axis = 0; axis < Dim; ++axis) {
       const P f = this->offset[axis];

@@ -19,11 +19,11 @@ struct StepKernels {
                std::vector<std::int64_t>& key) = nullptr;
   void (*build_blocks)(Blocks<Dim>&, const std::vector<std::int64_t>& key, const Index<Dim>& extent) = nullptr;
 
-  void (*p2g)(const Particles<T, Dim>&, std::size_t begin, std::size_t end, const MaterialKernel<T, Dim>&, const StepConstants<T>&,
+  void (*p2g)(const ParticleView<T, Dim>&, std::size_t begin, std::size_t end, const MaterialKernel<T, Dim>&, const StepConstants<T>&,
               const Index<Dim>& origin, T* arena) = nullptr;
   void (*sum)(const Blocks<Dim>&, std::size_t block, const T* arenas, T* own) = nullptr;
   void (*update_nodes)(const T* sums, T* own, const GridConstants<T, Dim>&) = nullptr;
-  TileReport (*g2p)(Particles<T, Dim>&, const Tile&, const Blocks<Dim>&, const T* grid, const MaterialKernel<T, Dim>&,
+  TileReport (*g2p)(ParticleView<T, Dim>&, const Tile&, const Blocks<Dim>&, const T* grid, const MaterialKernel<T, Dim>&,
                     const StepConstants<T>&, bool account, const Index<Dim>& origin, const DomainBounds<Dim>&) = nullptr;
 };
 

@@ -5,7 +5,7 @@
 namespace jaxmpm {
 
 template <class Sch>
-TileReport gather_tile(Particles<typename Sch::T, Sch::Dim>& p, const Tile& tile, const Blocks<Sch::Dim>& blocks,
+TileReport gather_tile(ParticleView<typename Sch::T, Sch::Dim>& p, const Tile& tile, const Blocks<Sch::Dim>& blocks,
                        const typename Sch::T* grid, const MaterialKernel<typename Sch::T, Sch::Dim>& material,
                        const StepConstants<typename Sch::T>& step, bool account, const Index<Sch::Dim>& origin,
                        const DomainBounds<Sch::Dim>& domain) {

@@ -152,7 +152,8 @@ void ExplicitStep<T, Dim>::g2p() {
   parallel_for_host("jaxmpm::g2p", moving.size(), [&](std::size_t k) {
     const std::uint32_t t = moving[k];
     const Tile& tile = blocks_.tiles[t];
-    reports_[t] = kernels_.g2p(bodies_[tile.body], tile, blocks_, grid_.grid(), *materials_[tile.body], constants_, model_.account_energy,
+    ParticleView<T, Dim> p(bodies_[tile.body]);
+    reports_[t] = kernels_.g2p(p, tile, blocks_, grid_.grid(), *materials_[tile.body], constants_, model_.account_energy,
                                arena_origin(tile), domain_);
   });
 }

@@ -6,7 +6,7 @@
 #include "core/parallel_host.hpp"
 #include "core/round_up.hpp"
 #include "solvers/particle_gradient.hpp"
-#include "solvers/tile_fields.hpp"
+#include "solvers/tile_motion.hpp"
 
 namespace jaxmpm {
 namespace {
@@ -28,12 +28,24 @@ std::vector<Stretch> stretches(std::vector<Particles<T, Dim>>& bodies, bool lean
     const std::size_t bytes = field.size() * sizeof(field[0]);
     for (std::size_t done = 0; done < bytes; done += piece)
       all.push_back({reinterpret_cast<std::byte*>(field.data()) + done, offset + done, std::min(piece, bytes - done)});
-    offset += bytes;
+    offset += whole_lines(bytes);
   };
   for (Particles<T, Dim>& p : bodies) p.for_each_material_field(add);
   if (!lean)
     for (Particles<T, Dim>& p : bodies) p.for_each_motion_field(add);
   return all;
+}
+
+/// The body's particles with the material's fields of a kept state, which are read only; `numbers` moves on to the next body's.
+template <class T, int Dim>
+ParticleView<T, Dim> kept_view(const Particles<T, Dim>& body, const std::byte*& numbers) {
+  ParticleView<T, Dim> view(body);
+  view.for_each_material_field([&](auto& field) {
+    using Field = std::decay_t<decltype(field)>;
+    field = Field(reinterpret_cast<typename Field::Value*>(const_cast<std::byte*>(numbers)));
+    numbers += whole_lines(body.count() * sizeof(typename Field::Value));
+  });
+  return view;
 }
 
 template <class T, int Dim>
@@ -131,9 +143,9 @@ void ReversibleStep<T, Dim>::g2p_adjoint() {
   g2p_reports_.assign(tiles.size(), {});
   parallel_for_host("jaxmpm::g2p_adjoint", tiles.size(), [&](std::size_t t) {
     const Tile& tile = tiles[t];
+    ParticleView<T, Dim> bar(bars_[tile.body]);
     adjoint_.g2p(this->bodies_[tile.body], tile, this->blocks_, this->grid_.grid(), *material_adjoints_[tile.body], this->constants_,
-                 this->arena_origin(tile), this->domain_, this->arenas_.data() + t * this->kernels_.arena_size, bars_[tile.body],
-                 g2p_reports_[t]);
+                 this->arena_origin(tile), this->domain_, this->arenas_.data() + t * this->kernels_.arena_size, bar, g2p_reports_[t]);
   });
   add_g2p_reports();
   bars_move_ = false;
@@ -150,8 +162,9 @@ void ReversibleStep<T, Dim>::p2g_adjoint() {
   p2g_reports_.assign(tiles.size(), {});
   parallel_for_host("jaxmpm::p2g_adjoint", tiles.size(), [&](std::size_t t) {
     const Tile& tile = tiles[t];
+    ParticleView<T, Dim> bar(bars_[tile.body]);
     adjoint_.p2g(this->bodies_[tile.body], tile, this->blocks_, grid_adjoint_.by_sums(), *this->materials_[tile.body],
-                 *material_adjoints_[tile.body], this->constants_, this->arena_origin(tile), bars_[tile.body], p2g_reports_[t]);
+                 *material_adjoints_[tile.body], this->constants_, this->arena_origin(tile), bar, p2g_reports_[t]);
   });
   add_p2g_reports();
 }
@@ -161,22 +174,23 @@ void ReversibleStep<T, Dim>::p2g_adjoint() {
 template <class T, int Dim>
 void ReversibleStep<T, Dim>::between_steps_adjoint(const StepConstants<T>& after, const std::byte* numbers) {
   const auto& tiles = this->blocks_.tiles;
-  std::vector<FieldPlaces> present, before;
+  using Motion = TileMotion<T, Dim>;
+  std::vector<ParticleView<T, Dim>> present, before;
   const std::byte* at = present_;
   for (const Particles<T, Dim>& p : this->bodies_) {
-    present.push_back(present_ != nullptr ? material_places(p, at) : material_places(p));
-    before.push_back(material_places(p, numbers));
+    present.push_back(present_ != nullptr ? kept_view(p, at) : p);
+    before.push_back(kept_view(p, numbers));
   }
   p2g_reports_.assign(tiles.size(), {}), g2p_reports_.assign(tiles.size(), {});
   parallel_for_host("jaxmpm::between_steps_adjoint", tiles.size(), [&](std::size_t t) {
     const Tile& tile = tiles[t];
-    static thread_local TileFields<T, Dim> fields;
-    fields.open(tile, this->bodies_[tile.body], present[tile.body], before[tile.body], bars_[tile.body], bars_move_);
-    adjoint_.between_steps(fields.present, fields.before, {tile.body, tile.block, 0, tile.end - tile.begin}, this->blocks_,
-                           *this->materials_[tile.body], *material_adjoints_[tile.body], this->arena_origin(tile), this->domain_,
-                           this->arenas_.data() + t * this->kernels_.arena_size, fields.bars,
+    static thread_local Motion motion, by_motion;
+    ParticleView<T, Dim> p = present[tile.body], bar(bars_[tile.body]);
+    motion.lend(tile, p, Motion::Start::anything);
+    by_motion.lend(tile, bar, bars_move_ ? Motion::Start::copy : Motion::Start::zero);
+    adjoint_.between_steps(p, before[tile.body], tile, this->blocks_, *this->materials_[tile.body], *material_adjoints_[tile.body],
+                           this->arena_origin(tile), this->domain_, this->arenas_.data() + t * this->kernels_.arena_size, bar,
                            {after, this->constants_, grid_adjoint_.by_sums(), this->grid_.grid(), p2g_reports_[t], g2p_reports_[t]});
-    fields.close(tile, bars_[tile.body]);
   });
   if (bars_move_) clear_motion(bars_);
   bars_move_ = false;
@@ -224,12 +238,12 @@ std::uint64_t ReversibleStep<T, Dim>::at_kinks() const {
 template <class T, int Dim>
 std::size_t ReversibleStep<T, Dim>::particle_bytes(bool lean) const {
   std::size_t bytes = 0;
-  const auto add = [&](const auto& field) { bytes += field.size() * sizeof(field[0]); };
+  const auto add = [&](const auto& field) { bytes += whole_lines(field.size() * sizeof(field[0])); };
   for (const Particles<T, Dim>& p : this->bodies_) {
     p.for_each_material_field(add);
     if (!lean) p.for_each_motion_field(add);
   }
-  return whole_lines(bytes);  // where the sums begin
+  return bytes;  // where the sums begin
 }
 
 template <class T, int Dim>
@@ -344,13 +358,15 @@ template <class T, int Dim>
 void ReversibleStep<T, Dim>::add_stress_gradient(std::size_t b, const BodySnapshot& by) {
   constexpr int W = native_lanes<T>, size = Symmetric<T, Dim>::size;
   const Particles<T, Dim>& p = this->bodies_[b];
+  const ParticleView<T, Dim> view(p);
+  ParticleView<T, Dim> bar(bars_[b]);
   const std::uint32_t first = p.first_id();
   for (std::size_t s = 0; s < p.count(); s += W) {
     const int count = int(std::min<std::size_t>(W, p.count() - s));
     alignas(64) T by_sigma[size][W] = {};
     for (int l = 0; l < count; ++l)
       for (int k = 0; k < size; ++k) by_sigma[k][l] = T(by.stress[(p.id[s + std::size_t(l)] - first) * 6 + std::size_t(k)]);
-    material_adjoints_[b]->stress(p, s, count, by_sigma, bars_[b], material_totals_[b]);
+    material_adjoints_[b]->stress(view, s, count, by_sigma, bar, material_totals_[b]);
   }
 }
 

@@ -29,6 +29,20 @@ struct AlignedAllocator {
 template <class T>
 using Array = std::vector<T, AlignedAllocator<T>>;
 
+/// What a step changes, in order: places and what the material carries, and what a step gathers from the grid.
+template <class Fields, class F>
+void visit_material_fields(Fields& p, F& f) {
+  for (auto& field : p.position) f(field);
+  f(p.compression);
+  for (auto& field : p.history) f(field);
+  for (auto& field : p.dilation) f(field);
+}
+template <class Fields, class F>
+void visit_motion_fields(Fields& p, F& f) {
+  for (auto& field : p.velocity) f(field);
+  for (auto& field : p.affine) f(field);
+}
+
 /// Fields of one body. Sizes of the second level: position and velocity Dim, affine Dim·Dim or none, gradient Dim·Dim or none, dilation 1
 /// or none, history as the material asks.
 template <class T, int Dim>
@@ -57,23 +71,22 @@ struct Particles {
     visit(*this, f);
   }
 
-  /// Calls f(array) for every array that a step changes (sorting moves the others as well): places and what the material carries, and what
-  /// a step gathers from the grid.
+  /// Calls f(array) for every array that a step changes (sorting moves the others as well).
   template <class F>
   void for_each_material_field(F&& f) {
-    visit_material(*this, f);
+    visit_material_fields(*this, f);
   }
   template <class F>
   void for_each_material_field(F&& f) const {
-    visit_material(*this, f);
+    visit_material_fields(*this, f);
   }
   template <class F>
   void for_each_motion_field(F&& f) {
-    visit_motion(*this, f);
+    visit_motion_fields(*this, f);
   }
   template <class F>
   void for_each_motion_field(F&& f) const {
-    visit_motion(*this, f);
+    visit_motion_fields(*this, f);
   }
 
   std::size_t bytes_per_particle() const {
@@ -93,18 +106,6 @@ struct Particles {
     components("affine", self.affine), components("history", self.history), components("dilation", self.dilation);
     components("gradient", self.gradient);
     f(std::string("id"), self.id);
-  }
-  template <class Self, class F>
-  static void visit_material(Self& self, F& f) {
-    for (auto& array : self.position) f(array);
-    f(self.compression);
-    for (auto* arrays : {&self.history, &self.dilation})
-      for (auto& array : *arrays) f(array);
-  }
-  template <class Self, class F>
-  static void visit_motion(Self& self, F& f) {
-    for (auto* arrays : {&self.velocity, &self.affine})
-      for (auto& array : *arrays) f(array);
   }
 };
 

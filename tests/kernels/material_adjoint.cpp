@@ -48,10 +48,11 @@ void compare(const Law<double>& law, double stress, double strain) {
     for (auto& component : by_sigma)
       for (int l = 0; l < count; ++l) component[l] = normal(random) / stress;
     MaterialReport hand, tape;
-    adjoint.update(p, 0, count, H, 1e-3, by_hand, hand_H, hand);
-    adjoint.update_by_tape(p, 0, count, H, 1e-3, by_tape, tape_H, tape);
-    adjoint.stress(p, 0, count, by_sigma, by_hand, hand);
-    adjoint.stress_by_tape(p, 0, count, by_sigma, by_tape, tape);
+    ParticleView<double, Dim> into_hand(by_hand), into_tape(by_tape);
+    adjoint.update(p, 0, count, H, 1e-3, into_hand, hand_H, hand);
+    adjoint.update_by_tape(p, 0, count, H, 1e-3, into_tape, tape_H, tape);
+    adjoint.stress(p, 0, count, by_sigma, into_hand, hand);
+    adjoint.stress_by_tape(p, 0, count, by_sigma, into_tape, tape);
     check_equal(by_hand.compression, by_tape.compression);
     for (std::size_t k = 0; k < history; ++k) check_equal(by_hand.history[k], by_tape.history[k]);
     for (int k = 0; k < Dim * Dim; ++k)

@@ -31,7 +31,7 @@ class Contraction2d {
   /// Adds ∂f/∂X to the derivatives by the places of `count` particles from s.
   template <class Terms, class Stencil, class Bars>
   JAXMPM_INLINE void add_by_place(const Stencil&, std::size_t s, int count, const Pack<T, W>* values, Sums<Stencil, Bars>& sums,
-                                  Particles<T, 2>& bar) {
+                                  ParticleView<T, 2>& bar) {
     Pack<T, W> by[2] = {Pack<T, W>(T(0)), Pack<T, W>(T(0))};
     sums.add_by_place(Values2d<T, Terms>(values), by);
     for (int j = 0; j < 2; ++j) add_to_places(bar.position[std::size_t(j)].data() + s, count, by[j]);
@@ -40,7 +40,7 @@ class Contraction2d {
   /// Both.
   template <class Bars, class Terms, class Stencil>
   JAXMPM_INLINE void contract(const Stencil& t, std::size_t s, int count, const Pack<T, W>* values, Pack<T, W>* gathered,
-                              Particles<T, 2>& bar) {
+                              ParticleView<T, 2>& bar) {
     Sums<Stencil, Bars> sums;
     gather<Bars>(t, count, gathered, sums);
     add_by_place<Terms>(t, s, count, values, sums, bar);

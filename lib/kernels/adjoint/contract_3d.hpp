@@ -27,11 +27,13 @@ class Contraction3d {
     gather_.template gather<Bars>(t, count, gathered);
   }
   template <class Terms, class Stencil, class Bars>
-  JAXMPM_INLINE void add_by_place(const Stencil& t, std::size_t s, int count, const P* values, Sums<Stencil, Bars>&, Particles<T, 3>& bar) {
+  JAXMPM_INLINE void add_by_place(const Stencil& t, std::size_t s, int count, const P* values, Sums<Stencil, Bars>&,
+                                  ParticleView<T, 3>& bar) {
     contract_nodes<Terms, void>(t, s, count, values, nullptr, bar);
   }
   template <class Bars, class Terms>
-  JAXMPM_INLINE void contract(const StencilPlaces3d<Sch>& t, std::size_t s, int count, const P* values, P* gathered, Particles<T, 3>& bar) {
+  JAXMPM_INLINE void contract(const StencilPlaces3d<Sch>& t, std::size_t s, int count, const P* values, P* gathered,
+                              ParticleView<T, 3>& bar) {
     contract_nodes<Terms, Bars>(t, s, count, values, gathered, bar);
   }
 
@@ -45,7 +47,7 @@ class Contraction3d {
   /// Bars void: nothing is gathered. A cell after the other, for all lanes at once; only those in it take what comes out.
   template <class Terms, class Bars>
   JAXMPM_INLINE void contract_nodes(const StencilPlaces3d<Sch>& t, std::size_t s, int count, const P* values, P* gathered,
-                                    Particles<T, 3>& bar) {
+                                    ParticleView<T, 3>& bar) {
     const Place place[Dim] = {Place(t.offset[0]), Place(t.offset[1]), Place(t.offset[2])};
     P by[Dim] = {P(T(0)), P(T(0)), P(T(0))}, left = convert<T>(Pack<int, W>::load(t.base));
     for (T base = largest(left); base >= T(0); base = largest(left)) {

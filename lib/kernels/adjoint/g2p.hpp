@@ -13,12 +13,12 @@ struct AdjointReport {
 /// Adjoint of update_particles for W particles: derivatives by their end values in `bar` become those by their start values as far as they
 /// do not pass the grid, and those by what was gathered are written to `bars`, in the order of GatheredGroups.
 template <class Sch>
-JAXMPM_INLINE void update_particles_adjoint(const Particles<typename Sch::T, Sch::Dim>& p, std::size_t s, int count,
+JAXMPM_INLINE void update_particles_adjoint(const ParticleView<typename Sch::T, Sch::Dim>& p, std::size_t s, int count,
                                             const Pack<typename Sch::T, batch<typename Sch::T>>* gathered,
                                             const MaterialAdjoint<typename Sch::T, Sch::Dim>& material,
                                             const StepConstants<typename Sch::T>& step, const DomainBounds<Sch::Dim>& domain,
-                                            Particles<typename Sch::T, Sch::Dim>& bar, Pack<typename Sch::T, batch<typename Sch::T>>* bars,
-                                            AdjointReport& report) {
+                                            ParticleView<typename Sch::T, Sch::Dim>& bar,
+                                            Pack<typename Sch::T, batch<typename Sch::T>>* bars, AdjointReport& report) {
   using T = typename Sch::T;
   using G = GatheredGroups<Sch>;
   constexpr int W = batch<T>, Dim = Sch::Dim;
@@ -64,7 +64,7 @@ JAXMPM_INLINE void update_particles_adjoint(const Particles<typename Sch::T, Sch
   if constexpr (Sch::dilation)
     if (!p.dilation.empty()) {
       by_next = load(bar.dilation[0].data() + s, count);
-      average_volume(p, s, count, gathered[G::theta], step.volume_averaging, H);
+      average_volume<Dim>(p.dilation[0].data() + s, count, gathered[G::theta], step.volume_averaging, H);
     }
   material.update(p, s, count, H, step.dt, bar, by_H, report.material);
   if constexpr (Sch::dilation)
@@ -94,7 +94,7 @@ class G2pAdjoint {
     Stencil t;
     Pack<T, W> gathered[G::padded];
     typename Contract::template Sums<Stencil, G> sums;
-    Batch(const Particles<T, Dim>& p, std::size_t s, int count, const Index<Dim>& origin) : t(p, s, count, origin) {}
+    Batch(const ParticleView<T, Dim>& p, std::size_t s, int count, const Index<Dim>& origin) : t(p, s, count, origin) {}
   };
 
   /// `velocities`: what the tile gathered from.
@@ -104,14 +104,14 @@ class G2pAdjoint {
 
   /// Gathers again for `count` particles from s, whose state at the start of the step is p.
   template <class Count>
-  JAXMPM_ONCE Batch gather(const Particles<T, Dim>& p, std::size_t s, Count count) {
+  JAXMPM_ONCE Batch gather(const ParticleView<T, Dim>& p, std::size_t s, Count count) {
     Batch batch(p, s, count, origin_);
     velocities_.template gather<G>(batch.t, count, batch.gathered, batch.sums);
     return batch;
   }
 
   template <class Count>
-  JAXMPM_ONCE void reverse(Batch& batch, const Particles<T, Dim>& p, std::size_t s, Count count, Particles<T, Dim>& bar,
+  JAXMPM_ONCE void reverse(Batch& batch, const ParticleView<T, Dim>& p, std::size_t s, Count count, ParticleView<T, Dim>& bar,
                            AdjointReport& report) {
     Pack<T, W> bars[G::padded];
     for (auto& b : bars) b = Pack<T, W>(T(0));
@@ -134,8 +134,8 @@ class G2pAdjoint {
 
 /// Adjoint of grid to particles for particles [begin, end).
 template <class Sch>
-void g2p_adjoint_tile(const Particles<typename Sch::T, Sch::Dim>& p, std::size_t begin, std::size_t end, G2pAdjoint<Sch> g2p,
-                      Particles<typename Sch::T, Sch::Dim>& bar, AdjointReport& report) {
+void g2p_adjoint_tile(const ParticleView<typename Sch::T, Sch::Dim>& p, std::size_t begin, std::size_t end, G2pAdjoint<Sch> g2p,
+                      ParticleView<typename Sch::T, Sch::Dim>& bar, AdjointReport& report) {
   for_each_batch<typename Sch::T>(begin, end, [&](std::size_t s, auto count) {
     auto batch = g2p.gather(p, s, count);
     g2p.reverse(batch, p, s, count, bar, report);
@@ -146,9 +146,9 @@ void g2p_adjoint_tile(const Particles<typename Sch::T, Sch::Dim>& p, std::size_t
 /// Adjoint of particles to grid in a step, and then of grid to particles in the step before it: `p` is the state in between, `before` that at
 /// the start of the earlier step. What `p` moves with is gathered again, and need not have been kept.
 template <class Sch>
-void between_steps_adjoint_tile(Particles<typename Sch::T, Sch::Dim>& p, const Particles<typename Sch::T, Sch::Dim>& before,
+void between_steps_adjoint_tile(ParticleView<typename Sch::T, Sch::Dim>& p, const ParticleView<typename Sch::T, Sch::Dim>& before,
                                 std::size_t begin, std::size_t end, P2gAdjoint<Sch> p2g, G2pAdjoint<Sch> g2p,
-                                const StepConstants<typename Sch::T>& earlier, Particles<typename Sch::T, Sch::Dim>& bar,
+                                const StepConstants<typename Sch::T>& earlier, ParticleView<typename Sch::T, Sch::Dim>& bar,
                                 MaterialReport& p2g_report, AdjointReport& g2p_report) {
   using G = GatheredGroups<Sch>;
   static_assert(!Sch::flip && !Sch::dilation, "what they move with is not all gathered");

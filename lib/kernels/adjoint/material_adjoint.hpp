@@ -6,7 +6,7 @@
 #include "core/pack.hpp"
 #include "core/tensor.hpp"
 #include "deck/deck.hpp"
-#include "state/particles.hpp"
+#include "state/particle_view.hpp"
 
 namespace jaxmpm {
 
@@ -25,10 +25,10 @@ class MaterialAdjoint {
   virtual ~MaterialAdjoint() = default;
   /// Of MaterialKernel::update, `count` particles from s. In bar, compression and history by their end values become those by their start
   /// values; by_H[component][lane] receives the derivatives by H.
-  virtual void update(const Particles<T, Dim>& p, std::size_t s, int count, const T H[][W], T dt, Particles<T, Dim>& bar, T by_H[][W],
+  virtual void update(const ParticleView<T, Dim>& p, std::size_t s, int count, const T H[][W], T dt, ParticleView<T, Dim>& bar, T by_H[][W],
                       MaterialReport& report) const = 0;
   /// Of MaterialKernel::stress: adds to compression and history in bar what by_sigma[component][lane] brings.
-  virtual void stress(const Particles<T, Dim>& p, std::size_t s, int count, const T by_sigma[][W], Particles<T, Dim>& bar,
+  virtual void stress(const ParticleView<T, Dim>& p, std::size_t s, int count, const T by_sigma[][W], ParticleView<T, Dim>& bar,
                       MaterialReport& report) const = 0;
   /// Of MaterialKernel::start, all particles: `p` is the first state, `bar` by it; by_compression[particle] and by_stress[particle][6]
   /// receive the derivatives by what it was made from.

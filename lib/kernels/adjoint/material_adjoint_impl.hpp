@@ -19,7 +19,7 @@ class LawAdjoint final : public MaterialAdjoint<T, Dim> {
   /// The particles' compression and history as inputs of the tape, with their derivatives by the end of the step.
   struct Inputs {
     Real e, h[slots];
-    Inputs(const Particles<T, Dim>& p, std::size_t s, int count) : e(Real::input(load(p.compression.data() + s, count))) {
+    Inputs(const ParticleView<T, Dim>& p, std::size_t s, int count) : e(Real::input(load(p.compression.data() + s, count))) {
       for (int k = 0; k < history; ++k) h[k] = Real::input(load(p.history[std::size_t(k)].data() + s, count));
     }
   };
@@ -38,17 +38,17 @@ class LawAdjoint final : public MaterialAdjoint<T, Dim> {
     }
   }
   /// Derivatives by `count` particles, zero in the lanes behind them.
-  static P seed(const Array<T>& field, std::size_t s, int count) { return load_zeros_behind(field.data() + s, count); }
+  static P seed(const FieldView<T>& field, std::size_t s, int count) { return load_zeros_behind(field.data() + s, count); }
 
  public:
   explicit LawAdjoint(const Law<T>& law) : law_(law) {}
 
-  void update(const Particles<T, Dim>& p, std::size_t s, int count, const T H[][W], T dt, Particles<T, Dim>& bar, T by_H[][W],
+  void update(const ParticleView<T, Dim>& p, std::size_t s, int count, const T H[][W], T dt, ParticleView<T, Dim>& bar, T by_H[][W],
               MaterialReport& report) const override {
     if constexpr (Law<T>::by_hand) update_by_hand(p, s, count, H, dt, bar, by_H, report);
     else update_by_tape(p, s, count, H, dt, bar, by_H, report);
   }
-  void update_by_tape(const Particles<T, Dim>& p, std::size_t s, int count, const T H[][W], T dt, Particles<T, Dim>& bar, T by_H[][W],
+  void update_by_tape(const ParticleView<T, Dim>& p, std::size_t s, int count, const T H[][W], T dt, ParticleView<T, Dim>& bar, T by_H[][W],
                       MaterialReport& report) const {
     Tape<P>& tape = Real::tape();
     tape.clear();
@@ -69,12 +69,12 @@ class LawAdjoint final : public MaterialAdjoint<T, Dim> {
     for (int l = 0; l < count; ++l) report.at_kinks += tape.ties().m[l] != 0;
   }
 
-  void stress(const Particles<T, Dim>& p, std::size_t s, int count, const T by_sigma[][W], Particles<T, Dim>& bar,
+  void stress(const ParticleView<T, Dim>& p, std::size_t s, int count, const T by_sigma[][W], ParticleView<T, Dim>& bar,
               MaterialReport& report) const override {
     if constexpr (Law<T>::by_hand) stress_by_hand(p, s, count, by_sigma, bar, report);
     else stress_by_tape(p, s, count, by_sigma, bar, report);
   }
-  void stress_by_tape(const Particles<T, Dim>& p, std::size_t s, int count, const T by_sigma[][W], Particles<T, Dim>& bar,
+  void stress_by_tape(const ParticleView<T, Dim>& p, std::size_t s, int count, const T by_sigma[][W], ParticleView<T, Dim>& bar,
                       MaterialReport& report) const {
     Tape<P>& tape = Real::tape();
     tape.clear();
@@ -85,7 +85,7 @@ class LawAdjoint final : public MaterialAdjoint<T, Dim> {
       tape.seed(sigma[k].node, load_zeros_behind(by_sigma[k], count));
     }
     tape.sweep();
-    const auto add_to = [&](Array<T>& field, int node) {
+    const auto add_to = [&](FieldView<T>& field, int node) {
       store(field.data() + s, load(field.data() + s, count) + tape.derivative(node), count);
     };
     add_to(bar.compression, start.e.node);
@@ -95,9 +95,10 @@ class LawAdjoint final : public MaterialAdjoint<T, Dim> {
 
   void start(const Particles<T, Dim>& p, const Particles<T, Dim>& bar, double* by_compression, double* by_stress,
              MaterialReport& report) const override {
+    const ParticleView<T, Dim> first(p), by(bar);
     for (std::size_t s = 0; s < p.count(); s += W) {
       const int count = int(std::min<std::size_t>(W, p.count() - s));
-      start_batch(p, s, count, bar, by_compression + s, by_stress + 6 * s, report);
+      start_batch(first, s, count, by, by_compression + s, by_stress + 6 * s, report);
     }
   }
 
@@ -105,7 +106,7 @@ class LawAdjoint final : public MaterialAdjoint<T, Dim> {
   /// Values of `count` particles, and the derivatives by them (zero in the lanes behind).
   struct Batch {
     P e, h[slots], by_e, by_h[slots], by_constants[constants];
-    Batch(const Particles<T, Dim>& p, const Particles<T, Dim>& bar, std::size_t s, int count) {
+    Batch(const ParticleView<T, Dim>& p, const ParticleView<T, Dim>& bar, std::size_t s, int count) {
       e = load(p.compression.data() + s, count), by_e = seed(bar.compression, s, count);
       for (int k = 0; k < history; ++k) {
         h[k] = load(p.history[std::size_t(k)].data() + s, count);
@@ -113,13 +114,13 @@ class LawAdjoint final : public MaterialAdjoint<T, Dim> {
       }
       for (P& c : by_constants) c = P(T(0));
     }
-    void store_to(Particles<T, Dim>& bar, std::size_t s, int count, MaterialReport& report) const {
+    void store_to(ParticleView<T, Dim>& bar, std::size_t s, int count, MaterialReport& report) const {
       jaxmpm::store(bar.compression.data() + s, by_e, count);
       for (int k = 0; k < history; ++k) jaxmpm::store(bar.history[std::size_t(k)].data() + s, by_h[k], count);
       for (int k = 0; k < constants; ++k) report.constants[std::size_t(k)] += sum_of(by_constants[k], count);
     }
   };
-  void update_by_hand(const Particles<T, Dim>& p, std::size_t s, int count, const T H[][W], T dt, Particles<T, Dim>& bar, T by_H[][W],
+  void update_by_hand(const ParticleView<T, Dim>& p, std::size_t s, int count, const T H[][W], T dt, ParticleView<T, Dim>& bar, T by_H[][W],
                       MaterialReport& report) const {
     Batch b(p, bar, s, count);
     Matrix<P, Dim> increment, by_increment;
@@ -129,7 +130,7 @@ class LawAdjoint final : public MaterialAdjoint<T, Dim> {
     for (int k = 0; k < Dim * Dim; ++k) by_increment.a[k].store(by_H[k]);
     b.store_to(bar, s, count, report);
   }
-  void stress_by_hand(const Particles<T, Dim>& p, std::size_t s, int count, const T by_sigma[][W], Particles<T, Dim>& bar,
+  void stress_by_hand(const ParticleView<T, Dim>& p, std::size_t s, int count, const T by_sigma[][W], ParticleView<T, Dim>& bar,
                       MaterialReport& report) const {
     Batch b(p, bar, s, count);
     Symmetric<P, Dim> by;
@@ -138,7 +139,7 @@ class LawAdjoint final : public MaterialAdjoint<T, Dim> {
     b.store_to(bar, s, count, report);
   }
 
-  void start_batch(const Particles<T, Dim>& p, std::size_t s, int count, const Particles<T, Dim>& bar, double* by_compression,
+  void start_batch(const ParticleView<T, Dim>& p, std::size_t s, int count, const ParticleView<T, Dim>& bar, double* by_compression,
                    double* by_stress, MaterialReport& report) const {
     P h[slots];
     for (int k = 0; k < history; ++k) h[k] = load(p.history[std::size_t(k)].data() + s, count);
@@ -155,7 +156,7 @@ class LawAdjoint final : public MaterialAdjoint<T, Dim> {
     for (int k = 0; k < history; ++k) tape.seed(started[k].node, seed(bar.history[std::size_t(k)], s, count));
     tape.sweep();
     for (int l = 0; l < count; ++l) {
-      by_compression[l] = double(bar.compression[s + std::size_t(l)]) + double(tape.derivative(e.node)[l]);
+      by_compression[l] = double(bar.compression.data()[s + std::size_t(l)]) + double(tape.derivative(e.node)[l]);
       for (int k = 0; k < sigma.size; ++k) by_stress[6 * l + k] = double(tape.derivative(sigma[k].node)[l]);
     }
     add(law, count, report);

@@ -29,19 +29,19 @@ struct GatheredBars {
 
 /// Adjoint of Coefficients: what the gathered derivatives by a particle's coefficients bring to its fields.
 template <class Sch>
-JAXMPM_INLINE void coefficients_adjoint(const Particles<typename Sch::T, Sch::Dim>& p, std::size_t s, int count,
+JAXMPM_INLINE void coefficients_adjoint(const ParticleView<typename Sch::T, Sch::Dim>& p, std::size_t s, int count,
                                         const Coefficients<Sch>& of, const typename Coefficients<Sch>::Stress& sigma,
                                         const Pack<typename Sch::T, batch<typename Sch::T>>* gathered,
                                         const MaterialKernel<typename Sch::T, Sch::Dim>& material,
                                         const MaterialAdjoint<typename Sch::T, Sch::Dim>& material_adjoint,
-                                        const StepConstants<typename Sch::T>& step, Particles<typename Sch::T, Sch::Dim>& bar,
+                                        const StepConstants<typename Sch::T>& step, ParticleView<typename Sch::T, Sch::Dim>& bar,
                                         MaterialReport& report) {
   using T = typename Sch::T;
   using G = GatheredBars<Sch>;
   constexpr int W = batch<T>, Dim = Sch::Dim;
   using P = Pack<T, W>;
   const auto by_component = [&](int group, int c) { return gathered[G::V * group + Sch::vector_at + c]; };
-  const auto add = [&](Array<T>& field, P value) { store(field.data() + s, load(field.data() + s, count) + value, count); };
+  const auto add = [&](FieldView<T>& field, P value) { store(field.data() + s, load(field.data() + s, count) + value, count); };
   P by_mass = gathered[G::mass];
   for (int c = 0; c < Dim; ++c) {
     by_mass += by_component(0, c) * load(p.velocity[std::size_t(c)].data() + s, count);
@@ -97,7 +97,7 @@ class P2gAdjoint {
       : material_(material), material_adjoint_(material_adjoint), step_(step), origin_(origin), nodes_(by_sums) {}
 
   template <class Count>
-  JAXMPM_ONCE void reverse(const Particles<T, Dim>& p, std::size_t s, Count count, Particles<T, Dim>& bar, MaterialReport& report) {
+  JAXMPM_ONCE void reverse(const ParticleView<T, Dim>& p, std::size_t s, Count count, ParticleView<T, Dim>& bar, MaterialReport& report) {
     const typename Contract::template Stencil<G::with_d, G::with_g> t(p, s, count, origin_);
     alignas(64) typename Q::Stress sigma;
     Q q(p, s, count, material_, step_, sigma);
@@ -116,8 +116,8 @@ class P2gAdjoint {
 
 /// Adjoint of particles to grid for particles [begin, end).
 template <class Sch>
-void p2g_adjoint_tile(const Particles<typename Sch::T, Sch::Dim>& p, std::size_t begin, std::size_t end, P2gAdjoint<Sch> p2g,
-                      Particles<typename Sch::T, Sch::Dim>& bar, MaterialReport& report) {
+void p2g_adjoint_tile(const ParticleView<typename Sch::T, Sch::Dim>& p, std::size_t begin, std::size_t end, P2gAdjoint<Sch> p2g,
+                      ParticleView<typename Sch::T, Sch::Dim>& bar, MaterialReport& report) {
   for_each_batch<typename Sch::T>(begin, end, [&](std::size_t s, auto count) { p2g.reverse(p, s, count, bar, report); });
 }
 

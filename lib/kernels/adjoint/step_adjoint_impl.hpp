@@ -11,22 +11,22 @@ AdjointKernels<typename Sch::T, Sch::Dim> adjoint_kernels_of() {
   constexpr int Dim = Sch::Dim;
   AdjointKernels<T, Dim> k;
   k.update_nodes = &update_nodes_adjoint<Sch>;
-  k.g2p = [](const Particles<T, Dim>& p, const Tile& tile, const Blocks<Dim>& blocks, const T* grid,
+  k.g2p = [](const ParticleView<T, Dim>& p, const Tile& tile, const Blocks<Dim>& blocks, const T* grid,
              const MaterialAdjoint<T, Dim>& material, const StepConstants<T>& step, const Index<Dim>& origin,
-             const DomainBounds<Dim>& domain, T* arena, Particles<T, Dim>& bar, AdjointReport& report) {
+             const DomainBounds<Dim>& domain, T* arena, ParticleView<T, Dim>& bar, AdjointReport& report) {
     const Nodes<Sch, false> velocities(blocks, tile.block, grid);
     g2p_adjoint_tile<Sch>(p, tile.begin, tile.end, {material, step, origin, domain, velocities, arena}, bar, report);
   };
-  k.p2g = [](const Particles<T, Dim>& p, const Tile& tile, const Blocks<Dim>& blocks, const T* by_sums,
+  k.p2g = [](const ParticleView<T, Dim>& p, const Tile& tile, const Blocks<Dim>& blocks, const T* by_sums,
              const MaterialKernel<T, Dim>& material, const MaterialAdjoint<T, Dim>& adjoint, const StepConstants<T>& step,
-             const Index<Dim>& origin, Particles<T, Dim>& bar, MaterialReport& report) {
+             const Index<Dim>& origin, ParticleView<T, Dim>& bar, MaterialReport& report) {
     const Nodes<Sch, true> bars(blocks, tile.block, by_sums);
     p2g_adjoint_tile<Sch>(p, tile.begin, tile.end, {material, adjoint, step, origin, bars}, bar, report);
   };
   if constexpr (!Sch::flip && !Sch::dilation)
-    k.between_steps = [](Particles<T, Dim>& p, const Particles<T, Dim>& before, const Tile& tile, const Blocks<Dim>& blocks,
+    k.between_steps = [](ParticleView<T, Dim>& p, const ParticleView<T, Dim>& before, const Tile& tile, const Blocks<Dim>& blocks,
                          const MaterialKernel<T, Dim>& material, const MaterialAdjoint<T, Dim>& adjoint, const Index<Dim>& origin,
-                         const DomainBounds<Dim>& domain, T* arena, Particles<T, Dim>& bar,
+                         const DomainBounds<Dim>& domain, T* arena, ParticleView<T, Dim>& bar,
                          const typename AdjointKernels<T, Dim>::Between& of) {
       const Nodes<Sch, false> velocities(blocks, tile.block, of.grid);
       const Nodes<Sch, true> by_sums(blocks, tile.block, of.by_sums);
