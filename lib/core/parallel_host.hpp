@@ -35,14 +35,20 @@ void parallel_for_host_static(const std::string& label, std::size_t n, const F& 
   run_static(label, n, &run_part<F>, &f);
 }
 
-/// f(begin, end) for pieces of 0 … n−1 of one size, side by side. Their values are in order, so that what is added of them has the same bits
-/// with any number of threads.
+/// f(k, begin, end) for the pieces k = 0, 1, … of 0 … n−1, side by side. They are of one size, so small that what belongs to a piece's
+/// particles stays in the cache.
+inline constexpr std::size_t piece_size = 1024;
+template <class F>
+void for_each_piece(const std::string& label, std::size_t n, const F& f) {
+  parallel_for_host(label, pieces_of(n, piece_size), [&](std::size_t k) { f(k, k * piece_size, std::min(n, (k + 1) * piece_size)); });
+}
+
+/// f(begin, end) for each piece. The values are in order, so that what is added of them has the same bits with any number of threads.
 template <class F>
 auto in_pieces(const std::string& label, std::size_t n, const F& f) {
   static_assert(!std::is_same_v<decltype(f(std::size_t(0), n)), bool>, "threads cannot write bits side by side");
-  constexpr std::size_t size = 2048;
-  std::vector<decltype(f(std::size_t(0), n))> values(pieces_of(n, size));
-  parallel_for_host(label, values.size(), [&](std::size_t k) { values[k] = f(k * size, std::min(n, (k + 1) * size)); });
+  std::vector<decltype(f(std::size_t(0), n))> values(pieces_of(n, piece_size));
+  for_each_piece(label, n, [&](std::size_t k, std::size_t begin, std::size_t end) { values[k] = f(begin, end); });
   return values;
 }
 

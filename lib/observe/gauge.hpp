@@ -1,7 +1,7 @@
 #pragma once
 // Gauges: small series in time that a deck asks for. One file per kind, one line in the registry (gauges.hpp). Sums run over particles in
-// storage order, or over pieces of it and then in their order, which is the same with any number of threads. Where there is no material a sample is masked (valid = 0, value 0), never
-// NaN.
+// storage order, or over pieces of it and then in their order, which is the same with any number of threads. Where there is no material a
+// sample is masked (valid = 0, value 0), never NaN.
 #include <map>
 #include <memory>
 #include <optional>

@@ -158,9 +158,7 @@ void take_body_snapshot(const Model& model, const Body& body, const MaterialKern
   s.plastic_strain.resize(fields.plastic_strain ? n : 0), s.strain_energy.resize(fields.energy ? n : 0);
   const double rho0 = deck::reference_density(body.material);
   const bool of_material = fields.stress || fields.pressure || fields.energy || fields.plastic_strain;
-  constexpr std::size_t size = 1024;  // a part's fields stay in the cache
-  parallel_for_host("jaxmpm::snapshot", pieces_of(n, size), [&](std::size_t k) {
-    const std::size_t begin = k * size, end = std::min(n, begin + size);
+  for_each_piece("jaxmpm::snapshot", n, [&](std::size_t, std::size_t begin, std::size_t end) {
     const SnapshotPart<T, Dim> part{model, p, slots.data() + begin, slots.data() + end, begin};
     part.copy(p.id, s.id);
     part.places(s.position);

@@ -145,7 +145,7 @@ void Simulation::remember() {
   const OutputTimed timed(outcome_.output.checkpoints, outcome_.cpu_seconds);
   if (remembered_.use_count() > 1) recorder_.wait();  // it is being written: there would be three states in memory
   const Stopwatch watch;
-  remembered_ = std::make_shared<const std::vector<RawArray>>(solver_.save());
+  remembered_ = saved();
   remembered_at_ = now_;
   remember_cost_ = watch.seconds();
   last_remembered_.restart();
@@ -194,7 +194,7 @@ std::string Simulation::unwritten() {
 
 std::string Simulation::write_last_good() {
   const auto write = [&] {
-    recorder_.checkpoint(now_, std::make_shared<const std::vector<RawArray>>(solver_.save()), outcome_.seconds);
+    recorder_.checkpoint(now_, saved(), outcome_.seconds);
     recorder_.frame(now_);
     recorder_.wait();
     return fmt::format("The last good state (step {}, {:.9g} s) is in the last frame and in the checkpoint.", now_.step, now_.time);

@@ -77,6 +77,7 @@ class Simulation {
   bool should_stop() const;
   void checkpoint_if_due();
   void write_checkpoint();
+  SavedState saved() const { return std::make_shared<const std::vector<RawArray>>(solver_.save()); }
   void remember();  // keeps the present state for a rescue
   void remember_if_cheap();
   Moment return_to(std::uint64_t step);  // restores the remembered state and repeats the steps up to `step`
