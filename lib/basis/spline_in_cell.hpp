@@ -29,12 +29,12 @@ struct SplineAt {
 /// A place, at offset f from the base node.
 ///
 /// Moments follow from derivatives: with q = ¼ − t², Σ d n = q Σ g n for linear splines, ¼ Σ g n + t q/2 Σ g' n for quadratic and
-/// ⅓ Σ g n − q²/6 Σ g'' n for cubic ones (the moments of w itself, which B-splines reproduce up to order S − 1, fix the terms).
+/// ⅓ Σ g n − q²/6 Σ g'' n for cubic ones (found by putting powers of X_i − X for n: Σ w (X_i − X)^k is known for B-splines).
 template <int S, class Real>
 struct SplinePlace {
   Real power[S];                      // t^k / k!
   Real of_highest, of_highest_slope;  // factor of the highest derivative in a moment, and its derivative by t
-  static constexpr double of_slope = S == 2 ? 0 : Bspline<S>::second_moment;
+  static constexpr double of_slope = S == 2 ? 0 : Bspline<S>::second_moment;  // of the slope; linear splines' is the highest derivative
 
   SplinePlace() = default;
   JAXMPM_INLINE explicit SplinePlace(Real f) {

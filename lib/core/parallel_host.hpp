@@ -35,8 +35,8 @@ void parallel_for_host_static(const std::string& label, std::size_t n, const F& 
   run_static(label, n, &run_part<F>, &f);
 }
 
-/// f(k, begin, end) for the pieces k = 0, 1, … of 0 … n−1, side by side. They are of one size, so small that what belongs to a piece's
-/// particles stays in the cache.
+/// f(k, begin, end) for the pieces k = 0, 1, … of 0 … n−1, side by side. They are of one size (the last may be smaller), small enough for what
+/// belongs to a thousand particles to stay in the cache.
 inline constexpr std::size_t piece_size = 1024;
 template <class F>
 void for_each_piece(const std::string& label, std::size_t n, const F& f) {

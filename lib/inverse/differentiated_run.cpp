@@ -134,6 +134,7 @@ class Reversal {
   /// Reverses the step from the newest kept state, and forgets that.
   void reverse_step(std::size_t start) {
     solver_.step_adjoint(steps_.dt[start], *kept_.back().rest, numbers_.top());
+    // The solver still reads what is forgotten now, which is whole until something else comes to lie there.
     if (start == 0 || looked_at(start) || numbers_.fetches_next()) go_back();
     add_looks(start);
     present_ = lost;

@@ -16,6 +16,7 @@ class SnapshotPool {
   /// the other beyond. None may be in use. Keeps the memory of before when the size is the same and it is not more than `most`.
   void prepare(std::size_t bytes, std::size_t most, std::size_t expected);
   std::byte* take();
+  /// What the block holds stays until it is taken again.
   void give_back(std::byte* block) { free_.push_back(block); }
   /// Gives all memory back to the system.
   void clear() { chunks_.clear(), free_.clear(), blocks_ = touched_ = 0; }

@@ -10,7 +10,7 @@ template <class T, int Dim, template <class> class Law>
 class LawKernel final : public MaterialKernel<T, Dim> {
   static constexpr int W = batch<T>, history = Law<T>::template history_size<Dim>(), strain = Law<T>::template plastic_strain_index<Dim>();
   static constexpr int slots = history > 0 ? history : 1;  // arrays of size zero are no C++
-  static_assert(history <= ParticleView<T, Dim>::most_history);
+  static_assert(history <= ParticleView<T, Dim>::most_history, "most_history has to grow with this law");
   using P = Pack<T, W>;
   Law<T> law_;
   Law<double> exact_;  // set-up and output

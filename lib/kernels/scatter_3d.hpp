@@ -67,7 +67,7 @@ class Scatter3d {
   /// `count` particles, those of the stencils t.
   template <class Terms, class Stencil>
   JAXMPM_INLINE void add(const Stencil& t, int count, const Values3d<T, Terms>& values) {
-    Rows now = rows_;  // in registers
+    Rows now = rows_;  // in registers, where they fit
     for (int l = 0; l < count; ++l) {
       if (t.base[l] != now.base) {
         now.add_to(arena_);

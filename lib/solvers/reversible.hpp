@@ -42,8 +42,8 @@ class ReversibleSolver {
   /// Adds derivatives of the loss by the present state, given by its snapshot in order of ids.
   virtual void add_gradient(const SnapshotGradient& by) = 0;
   /// Derivatives by the state after a step of dt from a kept state become those by that; part of it may wait for the next call, whose step
-  /// is the one before, or for end_reverse(). The present state is lost: go_back() to `kept` before add_gradient(). Until the next call
-  /// has returned, `numbers` stay as they are.
+  /// is the one before, or for end_reverse(). The present state is lost: go_back() to `kept` before add_gradient(). Until that,
+  /// `numbers` stay as they are, or until the next call that takes a kept state, or end_reverse(), has returned.
   virtual void step_adjoint(double dt, const KeptState& kept, const std::byte* numbers) = 0;
   /// Does what waits.
   virtual void end_reverse() = 0;

@@ -17,35 +17,47 @@ struct Stretch {
   std::size_t offset, size;
 };
 
-/// The fields that a step changes, in the order of a kept state, in pieces that several threads can share. Lean: without what particles move
+/// f(field, offset) for the fields of a kept state, each from a line of the cache on; returns their bytes. Lean: without what particles move
 /// with, which comes last.
+template <class Bodies, class F>
+std::size_t for_each_kept_field(Bodies& bodies, bool lean, F f) {
+  std::size_t offset = 0;
+  const auto visit = [&](auto& field) {
+    f(field, offset);
+    offset += whole_lines(field.size() * sizeof(field[0]));
+  };
+  for (auto& p : bodies) p.for_each_material_field(visit);
+  if (lean) return offset;
+  for (auto& p : bodies) p.for_each_motion_field(visit);
+  return offset;
+}
+
+/// In pieces that several threads can share.
 template <class T, int Dim>
 std::vector<Stretch> stretches(std::vector<Particles<T, Dim>>& bodies, bool lean) {
   constexpr std::size_t piece = std::size_t(1) << 15;
   std::vector<Stretch> all;
-  std::size_t offset = 0;
-  const auto add = [&](auto& field) {
+  for_each_kept_field(bodies, lean, [&](auto& field, std::size_t offset) {
     const std::size_t bytes = field.size() * sizeof(field[0]);
     for (std::size_t done = 0; done < bytes; done += piece)
       all.push_back({reinterpret_cast<std::byte*>(field.data()) + done, offset + done, std::min(piece, bytes - done)});
-    offset += whole_lines(bytes);
-  };
-  for (Particles<T, Dim>& p : bodies) p.for_each_material_field(add);
-  if (!lean)
-    for (Particles<T, Dim>& p : bodies) p.for_each_motion_field(add);
+  });
   return all;
 }
 
-/// The body's particles with the material's fields of a kept state, which are read only; `numbers` moves on to the next body's.
+/// The bodies with the material's fields of a kept state, which are read only.
 template <class T, int Dim>
-ParticleView<T, Dim> kept_view(const Particles<T, Dim>& body, const std::byte*& numbers) {
-  ParticleView<T, Dim> view(body);
-  view.for_each_material_field([&](auto& field) {
-    using Field = std::decay_t<decltype(field)>;
-    field = Field(reinterpret_cast<typename Field::Value*>(const_cast<std::byte*>(numbers)));
-    numbers += whole_lines(body.count() * sizeof(typename Field::Value));
-  });
-  return view;
+std::vector<ParticleView<T, Dim>> kept_views(const std::vector<Particles<T, Dim>>& bodies, const std::byte* numbers) {
+  std::vector<std::size_t> offsets;
+  for_each_kept_field(bodies, true, [&](const auto&, std::size_t offset) { offsets.push_back(offset); });
+  std::vector<ParticleView<T, Dim>> views(bodies.begin(), bodies.end());
+  auto offset = offsets.begin();
+  for (ParticleView<T, Dim>& view : views)
+    view.for_each_material_field([&](auto& field) {
+      using Field = std::decay_t<decltype(field)>;
+      field = Field(reinterpret_cast<typename Field::Value*>(const_cast<std::byte*>(numbers + *offset++)));
+    });
+  return views;
 }
 
 template <class T, int Dim>
@@ -175,12 +187,9 @@ template <class T, int Dim>
 void ReversibleStep<T, Dim>::between_steps_adjoint(const StepConstants<T>& after, const std::byte* numbers) {
   const auto& tiles = this->blocks_.tiles;
   using Motion = TileMotion<T, Dim>;
-  std::vector<ParticleView<T, Dim>> present, before;
-  const std::byte* at = present_;
-  for (const Particles<T, Dim>& p : this->bodies_) {
-    present.push_back(present_ != nullptr ? kept_view(p, at) : p);
-    before.push_back(kept_view(p, numbers));
-  }
+  using Views = std::vector<ParticleView<T, Dim>>;
+  const Views present = present_ != nullptr ? kept_views(this->bodies_, present_) : Views(this->bodies_.begin(), this->bodies_.end());
+  const Views before = kept_views(this->bodies_, numbers);
   p2g_reports_.assign(tiles.size(), {}), g2p_reports_.assign(tiles.size(), {});
   parallel_for_host("jaxmpm::between_steps_adjoint", tiles.size(), [&](std::size_t t) {
     const Tile& tile = tiles[t];
@@ -236,14 +245,8 @@ std::uint64_t ReversibleStep<T, Dim>::at_kinks() const {
 }
 
 template <class T, int Dim>
-std::size_t ReversibleStep<T, Dim>::particle_bytes(bool lean) const {
-  std::size_t bytes = 0;
-  const auto add = [&](const auto& field) { bytes += whole_lines(field.size() * sizeof(field[0])); };
-  for (const Particles<T, Dim>& p : this->bodies_) {
-    p.for_each_material_field(add);
-    if (!lean) p.for_each_motion_field(add);
-  }
-  return bytes;  // where the sums begin
+std::size_t ReversibleStep<T, Dim>::particle_bytes(bool lean) const {  // where the sums begin
+  return for_each_kept_field(this->bodies_, lean, [](const auto&, std::size_t) {});
 }
 
 template <class T, int Dim>

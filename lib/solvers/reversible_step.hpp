@@ -30,7 +30,10 @@ class ReversibleStep final : public ExplicitStep<T, Dim>, public ReversibleSolve
   std::uint64_t at_kinks() const override;
 
   /// Derivatives by the particles' fields, in storage order (position: per cell); `id` is empty. For tests, which may set them.
-  std::vector<Particles<T, Dim>>& bars() { return bars_; }
+  std::vector<Particles<T, Dim>>& bars() {
+    bars_move_ = true;
+    return bars_;
+  }
   const std::vector<Particles<T, Dim>>& particles() const { return this->bodies_; }
 
  private:
@@ -56,7 +59,7 @@ class ReversibleStep final : public ExplicitStep<T, Dim>, public ReversibleSolve
   void update_grid_adjoint(double dt);
   void p2g_adjoint();
   void between_steps_adjoint(const StepConstants<T>& after, const std::byte* numbers);
-  void read_present();
+  void read_present();  // the present state into bodies_, where that is still to be done
   void unsort(const Orders& orders);
   void add_report(std::size_t tile, const MaterialReport& report);
   void add_g2p_reports();
@@ -72,7 +75,7 @@ class ReversibleStep final : public ExplicitStep<T, Dim>, public ReversibleSolve
   std::shared_ptr<const Epoch> epoch_;             // of the present state, unless it has been sorted since:
   std::uint64_t epoch_sorts_ = ~std::uint64_t(0);  // sorts_ when it was
   std::vector<Particles<T, Dim>> bars_;            // derivatives by the particles' fields, in storage order
-  bool bars_move_ = false;                         // add_gradient() may have made those by motion not zero since the last step
+  bool bars_move_ = false;                         // those by motion may have been changed since the last step
   const std::byte* present_ = nullptr;             // numbers of the present state, where bodies_ has yet to be read from them
   bool present_is_lean_ = false;
   std::uint64_t waiting_ = 0;                     // serial of the present state where p2g_adjoint() of the step from it is still to be done

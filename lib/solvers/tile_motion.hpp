@@ -18,7 +18,8 @@ class TileMotion {
 
   /// Becomes the motion's fields of the view, for the particles of the tile.
   void lend(const Tile& tile, ParticleView<T, Dim>& view, Start start) {
-    const std::size_t count = tile.end - tile.begin, stride = round_up(count, std::size_t(64));
+    const std::size_t count = tile.end - tile.begin, line = 64 / sizeof(T);
+    const std::size_t stride = round_up(count, line) + line;  // no power of two, so that fields do not compete for places in the cache
     values_.resize(std::max(values_.size(), (view.velocity.size() + view.affine.size()) * stride));
     T* to = values_.data();
     view.for_each_motion_field([&](FieldView<T>& field) {

@@ -16,7 +16,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 TESTS = {
     "test_kernels": ["adjoints by hand*"],
     "test_solvers": ["the adjoint*"],
-    "test_inverse": ["gradients*"],
+    "test_inverse": ["gradients*,a gradient*"],
 }
 
 

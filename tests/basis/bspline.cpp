@@ -4,7 +4,6 @@
 #include <catch2/catch.hpp>
 
 #include "basis/spline_in_cell.hpp"
-
 #include "core/dual.hpp"
 #include "core/pack.hpp"
 

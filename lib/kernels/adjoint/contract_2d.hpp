@@ -13,10 +13,11 @@ class Contraction2d {
  public:
   explicit Contraction2d(const Nodes2d<Sch, Masses>& nodes) : nodes_(nodes) {}
 
+  /// The stencils that contract() works on, and those of gather(), from which the same values are scattered.
   template <bool moments, bool slopes>
-  using Stencil = Stencils2d<Sch, moments, slopes, true>;
+  using ContractStencil = Stencils2d<Sch, moments, slopes, true>;
   template <bool moments, bool slopes>
-  using GatherStencil = Stencil<moments, slopes>;
+  using GatherStencil = ContractStencil<moments, slopes>;
   /// What a gather leaves for the derivatives by place.
   template <class Stencil, class Bars>
   using Sums = GatheredSums<Sch, Stencil, Bars, Masses, true>;

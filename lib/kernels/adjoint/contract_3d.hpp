@@ -16,7 +16,7 @@ class Contraction3d {
   explicit Contraction3d(const Nodes3d<Sch>& nodes) : gather_(nodes), cells_(nodes) {}
 
   template <bool moments, bool slopes>
-  using Stencil = StencilPlaces3d<Sch>;
+  using ContractStencil = StencilPlaces3d<Sch>;
   template <bool moments, bool slopes>
   using GatherStencil = Stencils3d<Sch, moments, slopes>;
   template <class Stencil, class Bars>
@@ -29,12 +29,12 @@ class Contraction3d {
   template <class Terms, class Stencil, class Bars>
   JAXMPM_INLINE void add_by_place(const Stencil& t, std::size_t s, int count, const P* values, Sums<Stencil, Bars>&,
                                   ParticleView<T, 3>& bar) {
-    contract_nodes<Terms, void>(t, s, count, values, nullptr, bar);
+    contract_nodes<void, Terms>(t, s, count, values, nullptr, bar);
   }
   template <class Bars, class Terms>
   JAXMPM_INLINE void contract(const StencilPlaces3d<Sch>& t, std::size_t s, int count, const P* values, P* gathered,
                               ParticleView<T, 3>& bar) {
-    contract_nodes<Terms, Bars>(t, s, count, values, gathered, bar);
+    contract_nodes<Bars, Terms>(t, s, count, values, gathered, bar);
   }
 
  private:
@@ -45,11 +45,13 @@ class Contraction3d {
   static constexpr bool uses_others(int plane) { return plane == 0 || Sch::flip; }
 
   /// Bars void: nothing is gathered. A cell after the other, for all lanes at once; only those in it take what comes out.
-  template <class Terms, class Bars>
+  template <class Bars, class Terms>
   JAXMPM_INLINE void contract_nodes(const StencilPlaces3d<Sch>& t, std::size_t s, int count, const P* values, P* gathered,
                                     ParticleView<T, 3>& bar) {
     const Place place[Dim] = {Place(t.offset[0]), Place(t.offset[1]), Place(t.offset[2])};
     P by[Dim] = {P(T(0)), P(T(0)), P(T(0))}, left = convert<T>(Pack<int, W>::load(t.base));
+    if constexpr (!std::is_void_v<Bars>)
+      for (int i = 0; i < Bars::size; ++i) gathered[i] = P(T(0));
     for (T base = largest(left); base >= T(0); base = largest(left)) {
       const auto here = left == P(base);
       const T* cell = cells_.at(int(base));
@@ -68,12 +70,12 @@ class Contraction3d {
     for (int j = 0; j < Dim; ++j) add_to_places(bar.position[std::size_t(j)].data() + s, count, by[j]);
   }
 
-  /// Value c of the nodes' quads: with what it splines to, a moment is Σ d n = of_slope Σ g n + of_highest Σ h n (SplinePlace).
+  /// Value c of the nodes' quads. A moment Σ d n is of_slope times the slope and of_highest times the highest derivative (SplinePlace).
   template <int rest, int moments, int slopes, class Bars, int plane>
   JAXMPM_INLINE void contract_value(const T* coefficient, int c, const Place (&place)[Dim], Mask<T, W> here, const P* values, P* gathered,
                                     P* sums) {
     const auto f = field_at<S, SplineCells3d<Sch>::stride>(coefficient, place);
-    const P of_slope(T(Place::of_slope));
+    const P of_slope{T(Place::of_slope)};
     const auto value = [&](int group) { return values[4 * group + c]; };
     const auto put = [&](int group, P sum) { gathered[4 * group + c] = select(here, sum, gathered[4 * group + c]); };
     if constexpr (rest >= 0)
@@ -92,6 +94,7 @@ class Contraction3d {
     }
     if constexpr (!std::is_void_v<Bars>) {
       constexpr PlaneTerms to = Bars::in_plane(plane);
+      static_assert(to.rest >= 0 && (moments < 0 || to.moments >= 0) && (slopes < 0 || to.slopes >= 0));
       put(to.rest, f.value);
       for (int k = 0; k < Dim; ++k) {
         if constexpr (moments >= 0) put(to.moments + k, of_slope * f.slope[k] + place[k].of_highest * f.highest[k]);

@@ -98,7 +98,7 @@ class P2gAdjoint {
 
   template <class Count>
   JAXMPM_ONCE void reverse(const ParticleView<T, Dim>& p, std::size_t s, Count count, ParticleView<T, Dim>& bar, MaterialReport& report) {
-    const typename Contract::template Stencil<G::with_d, G::with_g> t(p, s, count, origin_);
+    const typename Contract::template ContractStencil<G::with_d, G::with_g> t(p, s, count, origin_);
     alignas(64) typename Q::Stress sigma;
     Q q(p, s, count, material_, step_, sigma);
     Pack<T, W> gathered[G::padded];

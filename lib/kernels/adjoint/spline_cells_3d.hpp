@@ -6,8 +6,8 @@
 
 namespace jaxmpm {
 
-/// Coefficients for the cells of a tile, made when they are asked for: those of cells side by side along the last axis at once, a value of
-/// a cell a lane, in all planes.
+/// Coefficients for the cells of a tile, found when they are asked for: those of a row of cells along the last axis at once, four values of
+/// each cell side by side in the lanes.
 template <class Sch>
 class SplineCells3d {
   using T = typename Sch::T;
@@ -70,7 +70,7 @@ struct FieldAt {
 /// From the coefficients of one value, `stride` apart.
 template <int S, int stride, class P>
 JAXMPM_INLINE FieldAt<P> field_at(const typename P::Scalar* coefficient, const SplinePlace<S, P> (&place)[3]) {
-  const auto& [x, y, z] = place;
+  const SplinePlace<S, P>&x = place[0], &y = place[1], &z = place[2];
   // Named by what is done along y and along z: v value, s slope, c curvature, h the highest derivative.
   SplineAt<P> vv, sv, cv, hv, vs, ss, hs, vc, vh, sh;
   static_for<S>([&](auto i) JAXMPM_INLINE_LAMBDA {
